@@ -3,19 +3,23 @@
 Run with ``python benchmarks/make_adaptive.py`` (half an hour); ``--write`` puts what holds in the
 place of the shipped file, ``--frames N`` and ``--seed N`` make the run another one.
 
-``adaptive`` is tuned as the case ``mixture`` of `tuned`, from a ladder of its own steps and a quick
-location (of every way to a circle, too much is chosen that holds on no other frames);
-``locate``, which has one way only, by its own guard. Frames are of the project's simulator and of
-half the kinds of pad of the second one.
+Steps, rungs and what guards ask are by hand; the numbers in the guards are chosen, as
+``tactile-graph tune --levels`` does, on the cases ``adaptive`` and ``locate`` of `tuned`. Of
+``adaptive`` ``legible`` stays: it guards against pads of which most readings are missing, and no
+frame here is of one. (Where rungs and fields were free as well, what came out was not surely
+better: ``docs/evidence/tuned-guards.md``.) Frames are of the project's simulator and of half the
+kinds of pad of the second one; told is on `N_FRESH` draws of other seeds, each of unseen frames of
+these pads and of frames of the other kinds.
 
-What would refute that it may be shipped, said before it was measured, on unseen frames of these
-pads or on the other kinds: the upper end of the 95 % interval (bootstrap over stretches of frames)
-of the error where something lies is more than a twentieth above today's; that of missed objects, or
-of answers where nothing lies, more than a hundredth of the frames; or that of the time not below
-today's. And, of small discs that neither tuning nor telling saw (of 0.5 to 1.1 cm, on the thesis
-pad), today's finds more than a hundredth within 2 cm that the tuned one does not. Nor may what is
-simple be made dear for what is hard: on clean frames (an even load on the pad that is told) the
-mean time may be at most a tenth above today's.
+What would refute that it may be shipped, said before it was measured, on any of these: the upper
+end of the 95 % interval (bootstrap over stretches of frames) of the error where something lies is
+more than a twentieth above today's; that of missed objects, or of answers where nothing lies, more
+than a hundredth of the frames; that of the time more than a twentieth above today's. Or: of small
+discs that neither tuning nor telling saw (of 0.5 to 1.1 cm, on the thesis pad), today's finds more
+than a hundredth within 2 cm that the tuned one does not. Or: on clean frames (an even load on the
+pad that is told) the mean time is more than a tenth above today's. Or: of a number nearly all
+others that there are to choose from are as good in 95 of 100 resamples, so that frames do not tell
+it.
 """
 
 from __future__ import annotations
@@ -26,19 +30,24 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from tuned import CASES, Told, markdown, run, small_discs, streamed
+from tuned import Told, markdown, run, small_discs, streamed
 
 from tactile_graph import Frame, Pipeline, load
 from tactile_graph.compiled import warm_up
+from tactile_graph_tune import Tuned
 from tactile_graph_tune.rerun import rerun
 from tactile_graph_tune.table.record import Judged
 
-PRODUCTS = {"adaptive": "mixture", "locate": "locate"}
+PRODUCTS = ("adaptive", "locate")
 ERROR_MARGIN, CHOSEN_MARGIN = 0.05, 0.015
 """Of today's error: what may be shipped, and what is allowed in choosing."""
-SHARE_MARGIN = 0.01
+SHARE_MARGIN, TIME_MARGIN, CLEAN_MARGIN = 0.01, 0.05, 0.1
+NEARLY_ALL = 0.95
+N_FRESH = 3
 N_SMALL = 120
-ROUNDS, TIME_MARGIN = 3, 0.1
+ROUNDS = 3
+BY_HAND = {"legible": "by hand: no frame that the others were chosen by is missing so much"}
+"""What is said above the guards that stay."""
 FOUND_CM = 2.0
 PIPELINES = Path(__file__).parents[1] / "pipelines" / "tactile_graph_pipelines"
 
@@ -51,7 +60,7 @@ def refuted_by(told: Told) -> Iterator[str]:
     for name, its in (("missed", more.missed), ("false", more.false)):
         if its.high > SHARE_MARGIN:
             yield f"{name}: maybe {100 * its.high:+.1f} % of the frames"
-    if told.ratio.high >= 1.0:
+    if told.ratio.high > 1.0 + TIME_MARGIN:
         yield f"it may take {told.ratio.high:.2f} of the time"
 
 
@@ -68,6 +77,13 @@ def found_in(pipeline: Pipeline, frames: list[Frame]) -> list[bool]:
     return found
 
 
+def unknown(tuned: Tuned) -> Iterator[str]:
+    """Yield what speaks against shipping, of how surely the numbers are known."""
+    for its in (its for worth in tuned.worths for its in worth.known):
+        if its.share >= NEARLY_ALL:
+            yield f"{its.text}: {100 * its.share:.0f} % of all levels"
+
+
 def lost(today: Pipeline, tuned: Pipeline, frames: list[Frame]) -> Iterator[str]:
     """Yield what speaks against shipping, of small discs."""
     pairs = zip(found_in(today, frames), found_in(tuned, frames), strict=True)
@@ -80,7 +96,7 @@ def slower(today: Pipeline, tuned: Pipeline, frames: list[Frame], judged: Judged
     """Yield what speaks against shipping, of the time that clean frames take."""
     ran = rerun({"today": today, "tuned": tuned}, frames, judged, ROUNDS, seed=0)
     ratio = float(ran["tuned"][0].mean() / ran["today"][0].mean())
-    if ratio > 1.0 + TIME_MARGIN:
+    if ratio > 1.0 + CLEAN_MARGIN:
         yield f"clean frames take {ratio:.2f} of the time"
 
 
@@ -93,22 +109,25 @@ def shipped(name: str, text: str) -> str:
     """Return a tuned file under the name, the words and the parent of the shipped one."""
     today = load(name)
     head = f"pipeline: {name}\nabout: {today.about}\nevolves: {today.evolves}\n"
-    return re.sub(r"^pipeline: .*\n(?:about: .*\n)?(?:evolves: .*\n)?", head, text, flags=re.M)
+    text = re.sub(r"^pipeline: .*\n(?:about: .*\n)?(?:evolves: .*\n)?", head, text, flags=re.M)
+    for guard, why in BY_HAND.items():
+        text = re.sub(rf"^  {guard}: ", f"  # {why}\n\\g<0>", text, flags=re.M)
+    return text
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", choices=PRODUCTS, nargs="+", default=list(PRODUCTS))
-    parser.add_argument("--frames", type=int, default=400)
+    parser.add_argument("--frames", type=int, default=800)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--write", action="store_true")
     asked = parser.parse_args()
     warm_up()
     for name in asked.only:
-        assert CASES[PRODUCTS[name]].by_hand == name
-        told, tuned = run(PRODUCTS[name], asked.frames, asked.seed, CHOSEN_MARGIN)
+        told, tuned = run(name, asked.frames, asked.seed, CHOSEN_MARGIN, N_FRESH)
         print("\n".join(markdown(list(told.values()))))
         against = [f"{on}: {why}" for on, its in told.items() for why in refuted_by(its)]
+        against += unknown(tuned)
         small = small_discs(N_SMALL, asked.seed + 3)
         against += lost(load(name), tuned.pipeline, small)
         against += slower(

@@ -8,12 +8,13 @@ Each case is a ladder of ``benchmarks/ladders``: every way to one answer, guarde
 that people have today. It is tuned on frames of the project's simulator and of half the kinds of
 pad of `second_simulator`, which shares no code with it, and told on two sets that chose nothing:
 *unseen frames*, of the same pads with another seed, and *unseen pads*, of the other kinds. The case
-``stream`` is 80 % empty frames, 15 % clean and 5 % hard ones; ``mixture`` is 40 % empty, 30 %
-clean, 5 % hard, and 25 % of ``circles``; ``locate`` is a third of ``stream`` and two thirds of
-discs and rectangles. Of these kinds of frame as many are drawn, and each counts for as many as it
-stands for: what is rare costs most, and a few frames do not tell how much. Sought is the least
-time at which each kind of error is no greater than today's: how far off where something lies,
-missed there, answered where nothing lies.
+``stream`` is 80 % empty frames, 15 % clean and 5 % hard ones; ``mixture`` and ``adaptive`` are 40 %
+empty, 30 % clean, 5 % hard, and 25 % of ``circles`` and small discs; ``locate`` is a third of
+``stream`` and two thirds of discs, small ones too, and rectangles. Of ``adaptive`` and ``locate``
+only the numbers in their guards are chosen. Of these kinds of frame as many are drawn, and each
+counts for as many as it stands for: what is rare costs most, and a few frames do not tell how much.
+Sought is the least time at which each kind of error is no greater than today's: how far off where
+something lies, missed there, answered where nothing lies.
 
 Beside it stands what people had before any guard was tuned: guards set by eye, of `adaptive` as it
 was then (``ladders/circle-by-eye.yaml``) and of ``rectangle-likelihood``, run by today's steps.
@@ -67,6 +68,8 @@ MARGIN, EQUAL = 0.025, 0.05
 """Shares by which an error may be greater than today's: in choosing, and to be called equal."""
 SMALL_CM, SMALL_G = (0.5, 0.7, 0.9, 1.1), (100.0, 300.0, 1000.0)
 """Radii and weights of discs no larger than a few elements."""
+DRAW = 1000
+"""What seeds of two draws are apart."""
 EMPTY_G = 1e-6
 """Weight that no element shows, of an object that is not there."""
 
@@ -91,6 +94,8 @@ class Case:
         How many of the frames to come are of which kind.
     kept : tuple of str
         Guards that stay: against what no frame here shows, and what spares clean frames most.
+    levels : bool
+        Whether only the numbers of its guards are chosen.
     by_eye : str
         The ladder, or the pipeline, whose guards were set by eye, where these are others.
     """
@@ -103,6 +108,7 @@ class Case:
     by_eye: str = ""
     shares: tuple[Share, ...] = ()
     kept: tuple[str, ...] = ()
+    levels: bool = False
 
     @property
     def path(self) -> str | Path:
@@ -195,6 +201,7 @@ CIRCLES = ("cells.share", *COUNTED[:2], "even.uneven", "even.n_cells", "even.cen
            "quick.posterior.lean", "quick.posterior.fall", "quick.posterior.neighbours",
            "located.centre_std_cm", "located.surprise", "located.fits")  # fmt: skip
 ADAPTIVE = tuple(f for f in CIRCLES if not f.startswith("likely."))
+NUMBERS = ("footprint.together", "footprint.rise", "even.uneven", "even.n_cells")
 RECTANGLES = (*COUNTED[:2], "quick.centre_std_cm", "quick.angle_std_deg", "quick.surprise",
               "quick.fits", "quick.posterior.alike", "quick.posterior.neighbours",
               "likely.centre_std_cm", "likely.angle_std_deg", "likely.surprise", "likely.fits",
@@ -219,7 +226,12 @@ def half_stream(n: int, seed: int) -> Frames:
     """Half discs one after the other, an eighth of all small ones, half the stream: what a pipeline
     for all has to bear."""
     discs = simulated("discs")(n // 2 - n // 8, seed) + small_discs(n // 8, seed)
-    return discs + streamed(n - len(discs), seed)
+    return mixed(discs + streamed(n - len(discs), seed), seed)
+
+
+def mixed(frames: Frames, seed: int) -> Frames:
+    """Return the frames in random order: stretches of neighbours then hold some of each kind."""
+    return [frames[k] for k in np.random.default_rng([seed, 13]).permutation(len(frames))]
 
 
 BEARABLE = (Share(EMPTY, 0.4), Share("clean *", 0.3), Share("hard *", 0.05))
@@ -231,10 +243,11 @@ def half_empty(kind: str, n: int, seed: int) -> Frames:
 
 
 def either_shape(n: int, seed: int) -> Frames:
-    """A third each of discs and rectangles, and of the stream."""
-    third = n // 3
-    return (simulated("discs")(third, seed) + simulated("rectangles")(third, seed)
-            + streamed(n - 2 * third, seed))  # fmt: skip
+    """Discs and rectangles, a quarter each, an eighth of small discs, and the stream."""
+    quarter, few = n // 4, n // 8
+    made = (simulated("discs")(quarter, seed) + simulated("rectangles")(quarter, seed)
+            + small_discs(few, seed) + streamed(n - 2 * quarter - few, seed))  # fmt: skip
+    return mixed(made, seed)
 
 
 def either_or_none(kind: str, n: int, seed: int) -> Frames:
@@ -255,8 +268,10 @@ CASES = {
     ),
     "mixture": Case("adaptive-ladder", "adaptive", half_stream, half_empty, ADAPTIVE,
                     "circle-by-eye", BEARABLE, ("legible", "certain")),
+    "adaptive": Case("", "adaptive", half_stream, half_empty, NUMBERS, "circle-by-eye", BEARABLE,
+                     ("legible",), levels=True),
     "locate": Case("", "locate", either_shape, either_or_none, COUNTED,
-                   shares=stream_shares(1.0 / 3.0)),
+                   shares=stream_shares(1.0 / 3.0), levels=True),
     "stream": Case("circle-ladder", "adaptive", streamed, stream_parts, CIRCLES,
                    "circle-by-eye", stream_shares()),
 }  # fmt: skip
@@ -296,27 +311,32 @@ class Told(NamedTuple):
 
 
 def tuning_of(
-    name: str, n: int, seed: int, margin: float = MARGIN
+    name: str, n: int, seed: int, margin: float = MARGIN, n_draws: int = 1
 ) -> tuple[Tuning, dict[str, Frames]]:
-    """Return what the search found for a case, and the frames to report on."""
+    """Return what the search found for a case, and the frames to report on, in so many draws."""
     case = CASES[name]
     choosing = frames_of(case, SEEN, n, seed, own=True)
-    told = {
-        "unseen frames": frames_of(case, SEEN, n, seed + 1, own=True),
-        "unseen pads": frames_of(case, UNSEEN, n, seed + 2, own=False),
-    }
+    told = {}
+    for k in range(n_draws):
+        draw, its = f", draw {k + 1}" * (n_draws > 1), seed + DRAW * k
+        told[f"unseen frames{draw}"] = frames_of(case, SEEN, n, its + 1, own=True)
+        told[f"unseen pads{draw}"] = frames_of(case, UNSEEN, n, its + 2, own=False)
     apart = [f for frames in told.values() for f in frames]
     ladder = load(case.path)
     request = Request(
-        ladder, margin=margin, fields=case.fields, kept=case.kept, seed=seed, shares=case.shares
-    )
+        ladder, margin=margin, fields=case.fields, kept=case.kept, seed=seed, shares=case.shares,
+        levels=case.levels,
+    )  # fmt: skip
     return searched(request, choosing, apart, lambda what, n, of: None), told
 
 
-def run(name: str, n: int, seed: int, margin: float = MARGIN) -> tuple[dict[str, Told], Tuned]:
+def run(
+    name: str, n: int, seed: int, margin: float = MARGIN, n_draws: int = 1
+) -> tuple[dict[str, Told], Tuned]:
     """Tune a case and return what it came to on frames and on pads it has not seen."""
-    tuning, told = tuning_of(name, n, seed, margin)
-    rows = np.split(tuning.split.reporting, [len(told["unseen frames"])])
+    tuning, told = tuning_of(name, n, seed, margin, n_draws)
+    ends = np.cumsum([len(frames) for frames in told.values()])
+    rows = np.split(tuning.split.reporting, ends[:-1])
     found = {}
     for (label, frames), part in zip(told.items(), rows, strict=True):
         its = replace(tuning, split=tuning.split._replace(reporting=part))

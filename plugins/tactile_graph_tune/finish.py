@@ -27,7 +27,11 @@ MOST_RIVALS = 3
 def finished(tuning: Tuning, told: Told) -> Tuned:
     """Return the report of a search, its last few choices run and timed."""
     last = {GIVEN: tuning.variants[0].given, ALWAYS: tuning.always, CHOSEN: tuning.chosen}
-    worths = tuple(_worth(tuning, place) for place in tuning.chosen.chosen)
+    known = tuning.known()
+    worths = tuple(
+        replace(_worth(tuning, place), known=tuple(known.get(place, ())))
+        for place in tuning.chosen.chosen
+    )
     text = _text(tuning, worths)
     told("run the last", 0, 1)
     pipelines = {k: _pipeline(tuning, c, text if k == CHOSEN else "") for k, c in last.items()}
@@ -126,7 +130,7 @@ def _stopped(tuning: Tuning, place: str) -> Any:
     """Return in which of the frames that report something at a place does not hold."""
     variant = tuning.variants[tuning.chosen.variant]
     rows = tuning.split.reporting
-    columns = [c.of(variant.table.fields[c.field].values) for c in tuning.chosen.chosen[place]]
+    columns = [c.of(variant.table.column(c.field).values) for c in tuning.chosen.chosen[place]]
     return ~np.logical_and.reduce(columns)[rows]
 
 
@@ -189,8 +193,10 @@ def _parent(own: Pipeline) -> Mapping[str, str]:
 
 def _head(tuning: Tuning) -> str:
     judged = tuning.judged
+    name, levels = tuning.request.pipeline.name, tuning.request.levels
+    made = "Numbers in guards" if levels else "Guards and order"
     return (
-        f"Guards and order by 'tactile-graph tune {tuning.request.pipeline.name}': "
+        f"{made} by 'tactile-graph tune {name}{' --levels' * levels}': "
         f"{tuning.front.n_weighed} choices weighed on {len(tuning.split.choosing)} frames, "
         f"numbers of {len(tuning.split.reporting)} others ({tuning.how}); error: of the "
         f"{judged.quantity} where something lies, a missed one counting {judged.price:g} "
@@ -200,12 +206,13 @@ def _head(tuning: Tuning) -> str:
 
 def told_of(worth: GuardWorth, tuning: Tuning) -> str:
     """Return what a guard saves and costs, in words."""
-    unit, saved = tuning.judged.unit, -worth.cost.time_us.mean
-    low, high = sorted(abs(x) for x in worth.cost.time_us[1:])
-    share = f", {100 * worth.saved_share:.0f} %" if saved > 0.0 else ""
-    took = "saves" if saved > 0.0 else "takes"
+    unit, more = tuning.judged.unit, worth.cost.time_us
+    saves = more.mean < 0.0
+    low, high = (-more.high, -more.low) if saves else (more.low, more.high)
+    share = f", {100 * worth.saved_share:.0f} %" if saves else ""
+    took = "saves" if saves else "takes"
     return (
-        f"{took} {abs(saved):.3g} us a frame ({low:.3g} to {high:.3g}){share}; "
+        f"{took} {abs(more.mean):.3g} us a frame ({low:.3g} to {high:.3g}){share}; "
         f"{worth.cost.told(unit)}; does not hold in {worth.n_stopped} of "
-        f"{len(tuning.split.reporting)} frames"
+        f"{len(tuning.split.reporting)} frames" + "".join(f"; {its.text}" for its in worth.known)
     )

@@ -61,6 +61,9 @@ class Request:
     free : tuple of Free
         Settings that may be chosen, besides those that the file marks; instead of its values where
         it marks the same.
+    levels : bool
+        Choose only the numbers that guards compare with, and free settings: what guards ask, and
+        the rungs, stay.
     rounds : int
         How often every frame is run: times are medians.
     seed : int
@@ -82,6 +85,7 @@ class Request:
     fields: tuple[str, ...] = ()
     kept: tuple[str, ...] = ()
     free: tuple[Free, ...] = ()
+    levels: bool = False
     rounds: int = 3
     seed: int = 0
     shares: tuple[Share, ...] = ()

@@ -17,10 +17,12 @@ from tactile_graph_tune.choices.declared import Declared, Place, declared
 from tactile_graph_tune.request import Request
 from tactile_graph_tune.search.cascade import Cascade, Order, Predicted, bound
 from tactile_graph_tune.search.front import Choice, Front
+from tactile_graph_tune.search.levels import Known, LevelSearch, dials_of, known_levels
 from tactile_graph_tune.search.oracle import Bound, Options, options_of
 from tactile_graph_tune.search.questions import Questions, fields_by_place
-from tactile_graph_tune.search.search import Aim, Search, Space, orders_of, pruned
+from tactile_graph_tune.search.search import Search, orders_of, pruned
 from tactile_graph_tune.search.select import Goal, Rows, merged, selected
+from tactile_graph_tune.search.weigher import Aim, Space
 from tactile_graph_tune.shares import weights_of
 from tactile_graph_tune.split import Split, halves_of, split_of
 from tactile_graph_tune.table.columns import Table
@@ -69,6 +71,7 @@ class Tuning:
     spaces: list[Space]
     front: Front
     always: Choice
+    goal: Goal
     chosen: Choice
 
     @property
@@ -90,6 +93,18 @@ class Tuning:
         """Return the mean time of the frames that report, nothing skipped."""
         table = self.variants[0].table.taken(self.split.reporting)
         return sum(table.mean(c.time_us) for c in table.nodes.values())
+
+    def known(self) -> dict[str, list[Known]]:
+        """Return for each place how surely its numbers are known."""
+        space = self.spaces[self.chosen.variant]
+        groups = self.split.groups[self.split.choosing]
+        over_us = OVER * _whole_us(self.spaces[0])
+        found: dict[str, list[Known]] = {}
+        for place, its in known_levels(
+            space, self.chosen, self.goal, over_us, groups, self.request.seed
+        ):
+            found.setdefault(place, []).append(its)
+        return found
 
     def bound(self) -> Bound:
         """Return the least that any choice could reach on the frames that report."""
@@ -127,14 +142,16 @@ def searched(
     fronts = [Front() for _ in folds]
     for k, (front, rows) in enumerate(zip(fronts, folds, strict=True)):
         half = [_space(v, v.table.taken(rows), request) for v in variants]
-        _search(half, front, goal.limits(rows, weigh))
+        _search(half, front, goal.limits(rows, weigh), request.levels)
         told("weigh choices", k + 1, len(folds))
     found = [p.choice for front in fronts for p in front.points]
-    chosen = selected(goal, [goal.given, always, *found], folds, weigh)
+    before = [goal.given] if request.levels else [goal.given, always]
+    chosen = selected(goal, [*before, *found], folds, weigh)
     limits = goal.limits(split.choosing, weigh)
-    chosen = pruned(spaces[chosen.variant], chosen, limits, goal.by_time)
+    if not request.levels:
+        chosen = pruned(spaces[chosen.variant], chosen, limits, goal.by_time)
     front = merged(fronts, found, split.choosing, weigh, limits)
-    return Tuning(request, judged, every, split, variants, spaces, front, always, chosen)
+    return Tuning(request, judged, every, split, variants, spaces, front, always, goal, chosen)
 
 
 def _means(variants: Sequence[Variant], choice: Choice, rows: Rows) -> Means:
@@ -188,6 +205,11 @@ def _check_found(missed: Sequence[float], judged: Judged) -> None:
 
 
 def _check_choices(request: Request, spaces: Sequence[Space]) -> None:
+    if request.levels and not any(dials_of(spaces[0].given.chosen)):
+        raise UsageError(
+            f"--levels: no guard of pipeline {request.pipeline.name!r} that may be chosen compares "
+            "a node's field with a number"
+        )
     if not spaces[0].questions.fields and len(spaces) == 1 and len(spaces[0].given.order) < 2:
         raise UsageError(
             f"pipeline {request.pipeline.name!r}: nothing to choose: it has no guard, no first_of "
@@ -312,14 +334,21 @@ def _always(space: Space) -> Choice:
 # -- the search ------------------------------------------------------------------------------
 
 
-def _search(spaces: Sequence[Space], front: Front, limits: Means) -> None:
-    own = spaces[0]
-    whole_us = float(_alone(own, Choice(0, own.given.order, {})).time_us)
-    aims = _aims(whole_us, own.table.truths.price, limits)
+def _search(spaces: Sequence[Space], front: Front, limits: Means, levels: bool = False) -> None:
+    whole_us = _whole_us(spaces[0])
+    aims = _aims(whole_us, spaces[0].table.truths.price, limits)
     allowed = limits._replace(time_us=inf, error=inf)
     for space in spaces:
+        if levels:
+            LevelSearch(space, front, aims, allowed).run()
+            continue
         alone = [float(_alone(space, Choice(0, (r,), {})).time_us) for r in space.given.order]
         Search(space, front, aims, allowed).run(orders_of(space.given.order, alone))
+
+
+def _whole_us(space: Space) -> float:
+    """Return the mean time of a frame in which no guard stops anything."""
+    return float(_alone(space, Choice(0, space.given.order, {})).time_us)
 
 
 def _aims(whole_us: float, price: float, limits: Means) -> list[Aim]:

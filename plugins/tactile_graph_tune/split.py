@@ -61,11 +61,14 @@ def split_of(frames: Sequence[Frame], n_apart: int, seed: int) -> Split:
             f"{n} frame{'s' if n != 1 else ''} with a known truth: half of them choose and the "
             f"others tell what came of it, so {LEAST_FRAMES} are needed at least"
         )
-    groups = _blocks([f.label for f in frames])
+    labels = [f.label for f in frames]
+    groups = _blocks(labels)
     rows = np.arange(n)
     if n_apart:
         if n_apart >= n:
             raise UsageError("no frame with a known truth is left to choose by")
+        first, last = (_blocks(part) for part in (labels[: n - n_apart], labels[n - n_apart :]))
+        groups = np.concatenate([first, last + first.max() + 1])
         return Split(rows[: n - n_apart], rows[n - n_apart :], groups, "recordings named for it")
     chosen, several = _half(frames, groups, rows, np.random.default_rng([seed, 5]))
     how = "recording by recording" if several else "by stretches of neighbouring frames"

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from tactile_graph import Pipeline
 from tactile_graph_tune.choices.comparisons import Comparison
 from tactile_graph_tune.search.front import Choice
+from tactile_graph_tune.search.levels import Known
 from tactile_graph_tune.search.oracle import Bound
 from tactile_graph_tune.split import Interval
 from tactile_graph_tune.table.record import Judged
@@ -58,6 +59,8 @@ class GuardWorth:
         What is more with it: time, error where something lies, shares missed and false.
     rivals : tuple of (Comparison, float, float)
         The best other fields at this place: the comparison, mean time and mean error with it.
+    known : tuple of Known
+        How surely its numbers are known.
     """
 
     place: str
@@ -66,6 +69,7 @@ class GuardWorth:
     saved_share: float
     cost: Weight
     rivals: tuple[tuple[Comparison, float, float], ...]
+    known: tuple[Known, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,10 +32,10 @@ def told(ratio: float = 0.5, **more: float) -> Told:
     )  # fmt: skip
 
 
-def test_every_product_is_tuned_against_itself():
-    assert {name: CASES[c].by_hand for name, c in make_adaptive.PRODUCTS.items()} == {
-        name: name for name in make_adaptive.PRODUCTS
-    }
+def test_every_product_is_tuned_against_itself_by_its_numbers_alone():
+    cases = [CASES[name] for name in make_adaptive.PRODUCTS]
+    assert [case.by_hand for case in cases] == list(make_adaptive.PRODUCTS)
+    assert all(case.levels for case in cases)
 
 
 @pytest.mark.parametrize(
@@ -45,7 +45,8 @@ def test_every_product_is_tuned_against_itself():
         (told(error=0.006), ["the error may be +0.006 more than 0.100"]),
         (told(missed=0.011), ["missed: maybe +1.1 % of the frames"]),
         (told(false=0.02), ["false: maybe +2.0 % of the frames"]),
-        (told(0.95), ["it may take 1.05 of the time"]),
+        (told(0.95), []),
+        (told(0.96), ["it may take 1.06 of the time"]),
     ],
 )
 def test_whatever_may_be_worse_by_more_than_its_margin_is_told(its, why):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -70,6 +70,11 @@ def alternatives(field: str) -> tuple[Comparison, ...]:
     assert isinstance(tree, ast.BoolOp)
     found = (_comparison(part, {node_of(field)}) for part in tree.values)
     return tuple(c for c in found if c is not None)
+
+
+def one_of_them(parts: Sequence[Comparison]) -> Comparison:
+    """Return the comparison that joins some of one node's by ``or``."""
+    return Comparison(f"({' or '.join(part.text for part in parts)})", HOLDS, 0.0)
 
 
 def taken_apart(text: str, nodes: Collection[str], conditions: Mapping[str, str]) -> Taken:

@@ -61,6 +61,9 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
 @click.option("--keep", "kept", metavar="GUARD", multiple=True,
               help="Leave this condition, or the guard of this node, as it is; can be "
               "repeated.")  # fmt: skip
+@click.option("--levels", is_flag=True,
+              help="Choose only the numbers that guards compare with, and free settings: what "
+              "guards ask, and the rungs, stay.")  # fmt: skip
 @click.option("--answer", default="", metavar="OUTPUT",
               help="The output whose error counts; the first one otherwise.")  # fmt: skip
 @click.option("--error", "quantity", metavar="QUANTITY",
@@ -120,8 +123,8 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
     )
     request = Request(
         opened, asked.answer, asked.quantity, asked.price, asked.most_error, asked.most_missed,
-        asked.most_false, asked.most_us, asked.margin, asked.fields, asked.kept, free, asked.rounds,
-        asked.seed, shares, place_asked(asked.workers, asked.on),
+        asked.most_false, asked.most_us, asked.margin, asked.fields, asked.kept, free, asked.levels,
+        asked.rounds, asked.seed, shares, place_asked(asked.workers, asked.on),
     )  # fmt: skip
     bar = Bar(console(stderr=True), "tune")
     try:
@@ -154,6 +157,7 @@ class _Options:
     free: tuple[str, ...]
     fields: tuple[str, ...]
     kept: tuple[str, ...]
+    levels: bool
     answer: str
     quantity: str | None
     price: float | None

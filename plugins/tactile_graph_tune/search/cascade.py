@@ -44,7 +44,7 @@ class Asked(NamedTuple):
     @classmethod
     def of(cls, comparison: Comparison, table: Table) -> Asked:
         """Return a comparison as a column."""
-        column = table.fields[comparison.field]
+        column = table.column(comparison.field)
         return cls(comparison.field, comparison.node, comparison.of(column.values), column.time_us)
 
 

@@ -53,13 +53,16 @@ class Goal:
 
     def limits(self, rows: Rows, weigh: Weigh) -> Means:
         """Return what may not be exceeded on some frames."""
-        own = weigh(self.given, rows)
+        return self.limits_of(weigh(self.given, rows))
+
+    def limits_of(self, own: Means) -> Means:
+        """Return what may not be exceeded where the pipeline as given comes to ``own``."""
         return Means(
             inf if self.time_us is None else self.time_us,
             inf if self.by_time else _said(self.error, (1.0 + self.margin) * own.error),
             _said(self.missed, own.missed),
             _said(self.false, own.false),
-            float(own.failed),
+            own.failed,
         )
 
     def sought(self, means: Means) -> float:
@@ -67,8 +70,8 @@ class Goal:
         return float(means.error if self.by_time else means.time_us)
 
 
-def _said(limit: float | None, own: Any) -> float:
-    return float(own) if limit is None else limit
+def _said(limit: float | None, own: Any) -> Any:
+    return own if limit is None else limit
 
 
 def selected(

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph_tune.choices.comparisons import alternatives
 from tactile_graph_tune.table.kinds import Flags, Reals, Truths
 
 
@@ -71,6 +72,19 @@ class Table:
     def n(self) -> int:
         """Frames."""
         return len(self.scored)
+
+    def column(self, field: str) -> FieldColumn:
+        """Return a field's column; also of recorded fields that other numbers join by ``or``."""
+        if field in self.fields:
+            return self.fields[field]
+        parts = alternatives(field)
+        columns = [self.fields[c.field] for c in parts]
+        unknown = np.all([np.isnan(c.values) for c in columns], axis=0)
+        holds = np.any([p.of(c.values) for p, c in zip(parts, columns, strict=True)], axis=0)
+        alike = [c.time_us for name, c in self.fields.items()
+                 if [p.field for p in alternatives(name)] == [p.field for p in parts]]  # fmt: skip
+        time_us = alike[0] if alike else sum(c.time_us for c in columns)
+        return FieldColumn(np.where(unknown, np.nan, holds), time_us)
 
     def weighed(self, weights: Reals) -> Table:
         """Return the table, its frames counting for so many each, shape (n_frames,)."""
