@@ -82,3 +82,16 @@ def test_clean_frames_that_take_longer_speak_against_shipping():
     (why,) = make_adaptive.slower(today, never, clean, judged)
     assert why.startswith("clean frames take ")
     assert list(make_adaptive.slower(never, today, clean, judged)) == []
+
+
+@pytest.mark.slow  # much is compiled
+def test_radii_that_are_further_off_speak_against_shipping():
+    today = load("adaptive")
+    trusting = loads(
+        today.text.replace("even.uneven < 0.1 and even.n_cells > 12", "even.n_cells > 1")
+    )
+    some = make_adaptive.discs(96, 0)
+    assert len(some) == 96
+    (why,) = make_adaptive.vaguer(today, trusting, some, 0)
+    assert why.startswith("the radius may be off by +")
+    assert list(make_adaptive.vaguer(today, today, some, 0)) == []
