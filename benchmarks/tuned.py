@@ -94,6 +94,8 @@ class Case:
         How many of the frames to come are of which kind.
     kept : tuple of str
         Guards that stay: against what no frame here shows, and what spares clean frames most.
+    quantity : str, optional
+        Whose error counts; the first there is if not given.
     levels : bool
         Whether only the numbers of its guards are chosen.
     by_eye : str
@@ -108,6 +110,7 @@ class Case:
     by_eye: str = ""
     shares: tuple[Share, ...] = ()
     kept: tuple[str, ...] = ()
+    quantity: str | None = None
     levels: bool = False
 
     @property
@@ -269,7 +272,7 @@ CASES = {
     "mixture": Case("adaptive-ladder", "adaptive", half_stream, half_empty, ADAPTIVE,
                     "circle-by-eye", BEARABLE, ("legible", "certain")),
     "adaptive": Case("", "adaptive", half_stream, half_empty, NUMBERS, "circle-by-eye", BEARABLE,
-                     ("legible",), levels=True),
+                     ("legible",), quantity="radius", levels=True),
     "locate": Case("", "locate", either_shape, either_or_none, COUNTED,
                    shares=stream_shares(1.0 / 3.0), levels=True),
     "stream": Case("circle-ladder", "adaptive", streamed, stream_parts, CIRCLES,
@@ -324,8 +327,8 @@ def tuning_of(
     apart = [f for frames in told.values() for f in frames]
     ladder = load(case.path)
     request = Request(
-        ladder, margin=margin, fields=case.fields, kept=case.kept, seed=seed, shares=case.shares,
-        levels=case.levels,
+        ladder, quantity=case.quantity, margin=margin, fields=case.fields, kept=case.kept,
+        seed=seed, shares=case.shares, levels=case.levels,
     )  # fmt: skip
     return searched(request, choosing, apart, lambda what, n, of: None), told
 

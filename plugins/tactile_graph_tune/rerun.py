@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from tactile_graph.wires.frame import Frame
 from tactile_graph_tune.table.kinds import Reals
 from tactile_graph_tune.table.losses import LossOf
 from tactile_graph_tune.table.record import WARM_FRAMES, Judged
+
+STRETCH = 20
+"""Frames that a pipeline has to itself."""
 
 
 def rerun(
@@ -29,7 +32,8 @@ def rerun(
     frames : sequence of Frame
     judged : Judged
     rounds : int
-        In each every pipeline has its turn with each frame; times are medians over them, processor
+        In each every pipeline has its turn with each stretch of `STRETCH` frames, so that a machine
+        that grows slower does so for all of them; times are medians over them, processor
         time of whole frames: what lies between the steps counts too.
     seed : int
     """
@@ -42,15 +46,24 @@ def rerun(
     for runner in runners.values():
         for frame in frames[:WARM_FRAMES]:
             runner(frame)
-    for k in range(rounds):
-        for label, runner in runners.items():
-            for i, frame in enumerate(frames):
-                runner.forget()
-                start = time.process_time()
-                result = runner(frame)
-                taken[label][k, i] = time.process_time() - start
-                if k == 0:
-                    found[label][i] = losses[label](frame, result.outcome_at)
+    for k, start, label in _turns(rounds, len(frames), list(pipelines)):
+        runner = runners[label]
+        for i in range(start, min(start + STRETCH, len(frames))):
+            frame = frames[i]
+            runner.forget()
+            begun = time.process_time()
+            result = runner(frame)
+            taken[label][k, i] = time.process_time() - begun
+            if k == 0:
+                found[label][i] = losses[label](frame, result.outcome_at)
     # What cannot be held against the truth of a frame is no answer to it.
     lost = {k: np.where(np.isnan(x), judged.price, x) for k, x in found.items()}
     return {k: (1e6 * np.median(taken[k], axis=0), lost[k]) for k in pipelines}
+
+
+def _turns(rounds: int, n: int, labels: list[str]) -> Iterator[tuple[int, int, str]]:
+    """Yield the number of a round, the first frame of a stretch and whose turn it is."""
+    for k in range(rounds):
+        for turn, start in enumerate(range(0, n, STRETCH), k):
+            first = turn % len(labels)
+            yield from ((k, start, label) for label in labels[first:] + labels[:first])

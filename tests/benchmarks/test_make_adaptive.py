@@ -92,6 +92,7 @@ def test_radii_that_are_further_off_speak_against_shipping():
     )
     some = make_adaptive.discs(96, 0)
     assert len(some) == 96
-    (why,) = make_adaptive.vaguer(today, trusting, some, 0)
-    assert why.startswith("the radius may be off by +")
+    centre, radius = make_adaptive.vaguer(today, trusting, some, 0)
+    assert centre.startswith("the centre may be off by +")
+    assert radius.startswith("the radius may be off by +")
     assert list(make_adaptive.vaguer(today, today, some, 0)) == []
