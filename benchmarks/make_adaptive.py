@@ -15,8 +15,9 @@ What would refute that it may be shipped, said before it was measured, on any of
 end of the 95 % interval (bootstrap over stretches of frames) of the error where something lies is
 more than a twentieth above today's; that of missed objects, or of answers where nothing lies, more
 than a hundredth of the frames; that of the time more than a twentieth above today's. Or: of small
-discs that neither tuning nor telling saw (of 0.5 to 1.1 cm, on the thesis pad), today's finds more
-than a hundredth within 2 cm that the tuned one does not. Or: on clean frames (an even load on the
+discs that neither tuning nor telling saw (of 0.5 to 1.1 cm, on the thesis pad, and as many on the
+kinds of pad that chose nothing), today's finds more than a hundredth within 2 cm that the tuned one
+does not. Or: on clean frames (an even load on the
 pad that is told) the mean time is more than a tenth above today's. Or: of centre or radius, over
 discs of either simulator that both answer, the upper end of the interval is more than a twentieth
 above today's (what counts in choosing is the radius of ``adaptive``, on which its fits differ most,
@@ -34,7 +35,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from tuned import UNSEEN, Told, benched, markdown, run, simulated, small_discs, streamed
+from tuned import UNSEEN, Told, benched, markdown, run, simulated, small_discs, small_on, streamed
 
 from tactile_graph import Frame, Pipeline, load
 from tactile_graph.compiled import warm_up
@@ -159,6 +160,8 @@ def main() -> None:
         against = [f"{on}: {why}" for on, its in told.items() for why in refuted_by(its)]
         against += unknown(tuned)
         small = small_discs(N_SMALL, asked.seed + 3)
+        each = math.ceil(N_SMALL / len(UNSEEN))
+        small += [f for kind in UNSEEN for f in small_on(kind, each, asked.seed + 3)]
         against += lost(load(name), tuned.pipeline, small)
         against += slower(
             load(name), tuned.pipeline, clean_frames(N_SMALL, asked.seed + 4), tuned.judged

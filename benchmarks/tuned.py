@@ -44,17 +44,17 @@ sys.path.insert(0, str(Path(__file__).parent))
 from second_simulator import KINDS, Bench, Kind
 from suite_parts.stream import stream
 
-from tactile_graph import Circle, Frame, load
+from tactile_graph import Circle, Frame, Pipeline, load
 from tactile_graph.compiled import warm_up
 from tactile_graph.wires import TrueObject
 from tactile_graph_tune import Request, Tuned
-from tactile_graph_tune.finish import finished, ratio_of, weight_of
+from tactile_graph_tune.finish import finished, predicted, ratio_of, weight_of
 from tactile_graph_tune.output.figure import write_figure
 from tactile_graph_tune.rerun import rerun
 from tactile_graph_tune.searching import Tuning, searched
 from tactile_graph_tune.shares import EMPTY, Share
 from tactile_graph_tune.split import Interval
-from tactile_graph_tune.tuned import CHOSEN, GIVEN, Weight
+from tactile_graph_tune.tuned import CHOSEN, Weight
 
 LADDERS = Path(__file__).parent / "ladders"
 NAMES = tuple(KINDS)
@@ -225,6 +225,16 @@ def small_discs(n: int, seed: int) -> Frames:
     return list(source.frames(seed))
 
 
+def small_on(kind: str, n: int, seed: int) -> Frames:
+    """Return frames of discs no larger than a few elements, on a kind of pad."""
+    rng = np.random.default_rng([seed, 17, *kind.encode()])
+    bench = Bench(replace(KINDS[kind], over_edge=False), rng)
+    sizes = [(r, g) for r in SMALL_CM for g in SMALL_G]
+    at = rng.integers(len(sizes), size=n).tolist()
+    return [bench.frame([TrueObject(_put(bench, sizes[k][0]), sizes[k][1])], i)
+            for i, k in enumerate(at)]  # fmt: skip
+
+
 def half_stream(n: int, seed: int) -> Frames:
     """Half discs one after the other, an eighth of all small ones, half the stream: what a pipeline
     for all has to bear."""
@@ -242,7 +252,9 @@ BEARABLE = (Share(EMPTY, 0.4), Share("clean *", 0.3), Share("hard *", 0.05))
 
 
 def half_empty(kind: str, n: int, seed: int) -> Frames:
-    return benched("disc")(kind, n // 2, seed) + stream_parts(kind, n - n // 2, seed)
+    few = n // 6
+    return (benched("disc")(kind, n // 2 - few, seed) + small_on(kind, few, seed)
+            + stream_parts(kind, n - n // 2, seed))  # fmt: skip
 
 
 def either_shape(n: int, seed: int) -> Frames:
@@ -254,9 +266,9 @@ def either_shape(n: int, seed: int) -> Frames:
 
 
 def either_or_none(kind: str, n: int, seed: int) -> Frames:
-    third = n // 3
-    return (benched("disc")(kind, third, seed) + benched("rectangle")(kind, third, seed)
-            + stream_parts(kind, n - 2 * third, seed))  # fmt: skip
+    third, few = n // 3, n // 6
+    return (benched("disc")(kind, third - few, seed) + benched("rectangle")(kind, third, seed)
+            + small_on(kind, few, seed) + stream_parts(kind, n - 2 * third, seed))  # fmt: skip
 
 
 CASES = {
@@ -340,24 +352,31 @@ def run(
     tuning, told = tuning_of(name, n, seed, margin, n_draws)
     ends = np.cumsum([len(frames) for frames in told.values()])
     rows = np.split(tuning.split.reporting, ends[:-1])
+    tuned = finished(tuning, lambda what, n, of: None)
     found = {}
     for (label, frames), part in zip(told.items(), rows, strict=True):
         its = replace(tuning, split=tuning.split._replace(reporting=part))
-        found[label] = _told(name, label, frames, its)
-    return found, finished(tuning, lambda what, n, of: None)
+        found[label] = _told(name, label, frames, its, tuned.pipeline)
+    return found, tuned
 
 
-def _told(name: str, label: str, frames: Frames, tuning: Tuning) -> Told:
-    tuned = finished(tuning, lambda what, n, of: None)
+def _told(name: str, label: str, frames: Frames, tuning: Tuning, chosen: Pipeline) -> Told:
     case = CASES[name]
-    every = {"hand": load(case.by_hand), "eye": load(case.eye_path), CHOSEN: tuned.pipeline}
+    every = {"hand": load(case.by_hand), "eye": load(case.eye_path), CHOSEN: chosen}
     ran = rerun(every, frames, tuning.judged, rounds=3, seed=0)
-    today_us = tuned.points[GIVEN].weight.time_us.mean
+    own, today = (predicted(tuning, c) for c in (tuning.chosen, tuning.variants[0].given))
+    own_us, today_us = own.time_us.mean, today.time_us.mean
+    oracle_us = tuning.bound().time_at(own.error.mean, own.missed.mean)
+    everything_us = tuning.everything_us()
+
+    def share(over_us: float) -> float:
+        return (over_us - own_us) / (over_us - oracle_us) if over_us > oracle_us else math.nan
+
     return Told(
         name, label, len(frames), weight_of(tuning, ran["hand"]), weight_of(tuning, ran[CHOSEN]),
         ratio_of(tuning, ran[CHOSEN][0], ran["hand"][0]),
-        weight_of(tuning, ran[CHOSEN], ran["hand"]), tuned.everything_us, tuned.oracle_us(),
-        tuned.share_of_saving(), tuned.share_of_saving(over_us=today_us),
+        weight_of(tuning, ran[CHOSEN], ran["hand"]), everything_us, oracle_us,
+        share(everything_us), share(today_us),
         weight_of(tuning, ran["eye"]), ratio_of(tuning, ran[CHOSEN][0], ran["eye"][0]),
         weight_of(tuning, ran[CHOSEN], ran["eye"]),
     )  # fmt: skip

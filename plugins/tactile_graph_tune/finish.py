@@ -40,7 +40,7 @@ def finished(tuning: Tuning, told: Told) -> Tuned:
     ran = rerun(pipelines, frames, tuning.judged, request.rounds, request.seed)
     told("run the last", 1, 1)
     points = {
-        k: Point(k, c, _predicted(tuning, c), weight_of(tuning, ran[k])) for k, c in last.items()
+        k: Point(k, c, predicted(tuning, c), weight_of(tuning, ran[k])) for k, c in last.items()
     }
     (given_us, given), (tuned_us, tuned) = ran[GIVEN], ran[CHOSEN]
     return Tuned(
@@ -51,7 +51,7 @@ def finished(tuning: Tuning, told: Told) -> Tuned:
         n_weighed=tuning.front.n_weighed,
         points=points,
         front=tuple(
-            Point("", p.choice, _predicted(tuning, p.choice)) for p in _some(tuning.front.points)
+            Point("", p.choice, predicted(tuning, p.choice)) for p in _some(tuning.front.points)
         ),
         bound=tuning.bound(),
         everything_us=tuning.everything_us(),
@@ -106,7 +106,8 @@ def weight_of(tuning: Tuning, found: Columns, less: Columns | None = None) -> We
     return Weight(ratio_of(tuning, time_us, np.ones(len(time_us))), **means)
 
 
-def _predicted(tuning: Tuning, choice: Choice) -> Weight:
+def predicted(tuning: Tuning, choice: Choice) -> Weight:
+    """Return what the table says of a choice, on the frames that report."""
     return weight_of(tuning, _columns(tuning, choice))
 
 
