@@ -60,7 +60,7 @@ def exactly_as_the_naive_evaluator(
         assert Counter(CALLS) == naive.ran
 
 
-@pytest.mark.parametrize("n_cases", [25, pytest.param(400, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("n_cases", [60, pytest.param(400, marks=pytest.mark.slow)])
 def test_plans_equal_a_naive_evaluator_and_run_only_what_is_needed(
     n_cases: int, folder: Path
 ) -> None:
