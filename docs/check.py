@@ -35,6 +35,8 @@ PACKAGES = sorted(
     for p in folder.glob("tactile_graph*/__init__.py")
 )
 CHECKS = {"PR01", "PR02"}
+SHARES = 2
+"""Processes at a time."""
 FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```", re.M | re.S)
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
 
@@ -84,6 +86,16 @@ def doctests(module: ModuleType) -> Iterator[str]:
     failed, _ = doctest.testmod(module)
     if failed:
         yield f"{module.__file__}: {failed} doctests fail"
+
+
+def described(share: int) -> tuple[int, list[str]]:
+    """Return how many modules one process looks at, and what is wrong in their docstrings."""
+    found, n = [], 0
+    for k, module in enumerate(modules()):
+        if k % SHARES == share:
+            n += 1
+            found += [*docstrings(module), *doctests(module)]
+    return n, found
 
 
 def pages() -> list[Path]:
@@ -172,13 +184,15 @@ def main() -> int:
         return 0
     checks = (links, commands, lengths)
     found = [text for page in pages() for check in checks for text in check(page)]
-    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
+    with ProcessPoolExecutor(SHARES, get_context("spawn")) as pool:
         waiting = [pool.submit(tutorial), *(pool.submit(blocks, page) for page in guides())]
         found += [text for one in waiting for text in one.result()]
     n = 0
-    for module in modules():
-        n += 1
-        found += [*docstrings(module), *doctests(module)]
+    # Processes of their own: none in which a page's blocks have run.
+    with ProcessPoolExecutor(SHARES, get_context("spawn")) as pool:
+        for count, texts in pool.map(described, range(SHARES)):
+            n += count
+            found += texts
     for text in found:
         print(text)
     print(

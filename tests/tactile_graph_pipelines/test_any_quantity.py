@@ -53,7 +53,10 @@ def loaded(name: str) -> Pipeline:
     return load(name)
 
 
-@pytest.mark.parametrize("quantity", PEAKS)
+@pytest.mark.parametrize(
+    "quantity",
+    [pytest.param(q, marks=[pytest.mark.slow] if q in ("gram", "counts") else []) for q in PEAKS],
+)
 @pytest.mark.parametrize(
     "name", slow_where_much_is_compiled(set(SHIPPED) - IN_VOLTS - KNOWN_IN_GRAMS)
 )

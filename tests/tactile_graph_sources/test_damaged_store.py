@@ -72,8 +72,22 @@ def test_frames_of_which_no_cell_is_valid_are_no_damage(tmp_path: Path) -> None:
     assert (index, report.troubles) == ([0, 1, 2, 3], [])
 
 
-@pytest.mark.parametrize("name", ["", "values", "time_s", "number"])
-@pytest.mark.parametrize("how", ["gone", "cut", "other"])
+@pytest.mark.parametrize(
+    ("name", "how"),
+    [
+        *(("", "other"), ("values", "cut"), ("values", "other"), ("time_s", "gone")),
+        *(
+            pytest.param(name, how, marks=pytest.mark.slow)
+            for name, hows in {
+                "": ("gone", "cut"),
+                "values": ("gone",),
+                "time_s": ("cut", "other"),
+                "number": ("gone", "cut", "other"),
+            }.items()
+            for how in hows
+        ),
+    ],
+)
 def test_damaged_metadata_are_told_and_every_frame_is_read(
     store: Path, name: str, how: str
 ) -> None:

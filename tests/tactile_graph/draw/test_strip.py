@@ -290,7 +290,12 @@ def test_no_frame_gives_no_picture() -> None:
 
 
 @pytest.mark.parametrize(
-    ("suffix", "head"), [(".png", b"\x89PNG"), (".svg", b"<?xml"), (".PDF", b"%PDF")]
+    ("suffix", "head"),
+    [
+        (".png", b"\x89PNG"),
+        (".svg", b"<?xml"),
+        pytest.param(".PDF", b"%PDF", marks=pytest.mark.slow),
+    ],
 )
 def test_is_written_in_the_format_of_its_suffix(tmp_path: Path, results, suffix, head) -> None:
     path = tmp_path / f"strip{suffix}"

@@ -64,6 +64,7 @@ def test_too_many_nodes_in_all_are_refused(tmp_path: Path, read_files: list[Path
     assert len(read_files) <= 21
 
 
+@pytest.mark.slow
 def test_a_pipeline_of_very_many_uses_is_refused_by_the_first(
     tmp_path: Path, read_files: list[Path]
 ) -> None:

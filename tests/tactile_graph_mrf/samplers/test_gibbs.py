@@ -89,7 +89,7 @@ def test_the_bits_do_not_depend_on_how_numbers_are_drawn_in_blocks(monkeypatch):
 
 @pytest.mark.parametrize("temperature", [1e-6, 5.0, 1e12])
 @pytest.mark.parametrize("weight", [0.0, 1.0, 1e12])
-@pytest.mark.parametrize("n_levels", [2, 4096])
+@pytest.mark.parametrize("n_levels", [2, pytest.param(4096, marks=pytest.mark.slow)])
 def test_extremes_stay_finite_and_within_the_range(temperature, weight, n_levels):
     image = picture(6, 6)
     for lines, smoothness in (
@@ -157,6 +157,7 @@ def test_outside_the_region_nothing_changes_and_inside_it_is_as_if_the_pad_ended
     assert within.energy == pytest.approx(alone.energy)
 
 
+@pytest.mark.slow
 def test_annealing_stops_once_nothing_can_change_and_loses_nothing_by_it(monkeypatch):
     image = picture()
     stopped = restore(image, n_sweeps=400)
@@ -174,6 +175,7 @@ def test_the_energy_scale_is_a_temperature():
     assert scaled.trace == restore(image, n_sweeps=20).trace
 
 
+@pytest.mark.slow
 def test_slow_annealing_beats_the_thesis_schedule_with_lines():
     image = picture()
     hasty = restore(image)
@@ -195,6 +197,7 @@ outputs: [restored]
 """
 
 
+@pytest.mark.slow
 def test_it_runs_from_yaml_with_its_model_as_a_mapping():
     pipeline = loads(TEXT.replace("WITH", "lines: marginal"))
     frame = next(iter(pipeline.frames(seed=1)))

@@ -53,7 +53,13 @@ def test_kasa_is_what_fractions_give():
         assert abs(found.shape[1] - mpf(y.numerator) / y.denominator) < mpf(10) ** -48
 
 
-@pytest.mark.parametrize("fit", CIRCLES)
+@pytest.mark.parametrize(
+    "fit",
+    [
+        pytest.param(f, marks=[pytest.mark.slow] if i in (1, 2) else [])
+        for i, f in enumerate(CIRCLES)
+    ],
+)
 def test_the_slopes_are_those_of_the_answer(fit):
     start = [[1.0, 2.0, 5.0]]
     plain = solve(fit, OFF, start)

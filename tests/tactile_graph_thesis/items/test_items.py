@@ -41,7 +41,8 @@ LONG = (
     *("direct-ellipse", "finer-pad", "heavier-smaller", "hysteresis", "boundary-operators"),
     *("figure-2.19", "one-pad", "rotation-order", "stack-order", "table-4.9"),
     *("variable-threshold", "broken-image", "noisy-rectangles", "erased-rectangles"),
-    *("residual-voltages", "converter", "subpixel"),
+    *("residual-voltages", "converter", "subpixel", "table-4.7", "table-4.8"),
+    *("figure-2.14", "figure-2.15", "erased-discs"),
 )
 VERDICTS: dict[str, list[bool]] = yaml.safe_load(
     (Path(__file__).parent / "verdicts.yaml").read_text(encoding="utf-8")

@@ -55,6 +55,7 @@ def test_beyond_1000_g_fewer_than_5_percent_are_wrong_and_at_0_g_it_is_a_guess(k
         assert beyond < 0.05
 
 
+@pytest.mark.slow
 def test_discs_of_different_radius_are_told_apart_even_at_equal_weight():
     curve = error_curves(PAIRS[4:5], Trials("decoupled", (0,), n_test=25))[0]
     assert curve.error["mahalanobis"][0] < 0.02

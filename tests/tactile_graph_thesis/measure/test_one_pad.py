@@ -27,6 +27,7 @@ def test_the_tables_have_39_averages() -> None:
     assert {c.unit for c in cells() if c.quantity == "angle"} == {"degree"}
 
 
+@pytest.mark.slow
 def test_averages_come_in_the_order_of_the_cells() -> None:
     frames = [
         list(load("circle-1").with_source("simulate", scene=s, frames=12).frames(3))

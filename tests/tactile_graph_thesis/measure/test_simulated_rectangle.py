@@ -66,6 +66,7 @@ def test_a_line_that_lacks_makes_cells_amiss() -> None:
     assert cells_amiss(made._replace(lines=every)) > 0
 
 
+@pytest.mark.slow
 def test_without_lines_the_image_is_blurred_and_with_them_it_is_not() -> None:
     made = figure_5_8(1, "annealed")
     assert rms(made, "lined") < 0.6 * rms(made, "observed")

@@ -42,7 +42,13 @@ def recorded():
 
 
 @pytest.mark.parametrize("chosen", CHOICES)
-@pytest.mark.parametrize("order", [("good", "fixed_good"), ("fixed_good", "good"), ("good",)])
+@pytest.mark.parametrize(
+    "order",
+    [
+        ("good", "fixed_good"),
+        *(pytest.param(it, marks=pytest.mark.slow) for it in [("fixed_good", "good"), ("good",)]),
+    ],
+)
 def test_time_and_error_of_every_frame_are_those_of_the_engine(chosen, order):
     its, cascade, table = recorded()
     found = cascade.predicted(table, order, chosen)

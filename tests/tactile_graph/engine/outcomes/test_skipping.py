@@ -805,6 +805,7 @@ def test_a_chain_of_2000_nodes_runs() -> None:
     assert run(make(f"n0: {V[3:]}\n{nodes}", "n1999"))["n1999"] == 3 + 1999
 
 
+@pytest.mark.slow
 def test_a_long_chain_of_choices_is_planned_in_no_time() -> None:
     """All that each reads stands before it; looked up anew for each, that takes seconds."""
     nodes = "\n".join(f"n{i}: {{first_of: [n{i - 1}, n{max(0, i - 2)}]}}" for i in range(1, 1900))

@@ -56,7 +56,7 @@ def read(path: Path, in_stacks: bool, **settings: Any) -> tuple[list[Any], Repor
 
 
 @pytest.mark.parametrize("change", CHANGES)
-@pytest.mark.parametrize("n", [3, 515, 1100])
+@pytest.mark.parametrize("n", [3, pytest.param(515, marks=pytest.mark.slow), 1100])
 def test_frames_and_what_is_said_of_them_are_the_same(
     n: int, change: Callable[[Values], None], tmp_path: Path
 ) -> None:

@@ -42,6 +42,10 @@ def test_these_are_the_studies_in_the_order_of_the_thesis() -> None:
     assert tuple(i.study or i.id for i in chapter if i.study or not i.number) == STUDIES
 
 
+COSTLY = ("hysteresis", "characteristic")
+"""Those for which much is compiled, or drawn."""
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", STUDIES)
 def test_what_the_thesis_concludes_comes_out(name: str) -> None:
@@ -55,7 +59,7 @@ def test_what_the_thesis_concludes_comes_out(name: str) -> None:
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(n, marks=[pytest.mark.slow] if n == "hysteresis" else [])  # much is compiled
+        pytest.param(n, marks=[pytest.mark.slow] if n in COSTLY else [])
         for n in STUDIES
         if n not in SLOW
     ],
