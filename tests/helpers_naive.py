@@ -232,9 +232,19 @@ class Naive:
 
     # -- what depends on no frame --------------------------------------------------------------
 
-    def constant(self, name: str, document: Any) -> bool:
-        body = document["nodes"][name]
-        if "use" in body or ("step" in body and self.steps[body["step"]].stateful):
+    def constant(self, text: str, document: Any) -> bool:
+        """Return whether what is referred to depends on no frame."""
+        root, *fields = text.split(".")
+        if root == "frame":
+            return False
+        body = document["nodes"][root]
+        if "use" in body:
+            inner = self.library[body["use"]]
+            outputs = {o.replace(".", "_"): o for o in inner["outputs"]}
+            name = outputs[fields[0]] if fields else next(iter(outputs.values()))
+            guard = set(_REF.findall(self.spelled(body.get("when", ""), document))) - _WORDS
+            return self.constant(name, inner) and all(self.constant(r, document) for r in guard)
+        if "step" in body and self.steps[body["step"]].stateful:
             return False
         texts = [self.spelled(body.get("when", ""), document), *body.get("first_of", [])]
         wires = body.get("in", [])
@@ -244,5 +254,5 @@ class Naive:
             else list(wires.values() if isinstance(wires, dict) else wires)
         ):
             texts += [w] if isinstance(w, str) else w
-        roots = {r.partition(".")[0] for t in texts for r in _REF.findall(t)} - _WORDS
-        return "frame" not in roots and all(self.constant(r, document) for r in roots)
+        read = {r for t in texts for r in _REF.findall(t)} - _WORDS
+        return all(self.constant(r, document) for r in read)
