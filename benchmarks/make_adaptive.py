@@ -15,7 +15,7 @@ What would refute that it may be shipped, said before it was measured, on any of
 end of the 95 % interval (bootstrap over stretches of frames) of the error where something lies is
 more than a twentieth above today's; that of missed objects, or of answers where nothing lies, more
 than a hundredth of the frames; that of the time more than a twentieth above today's. Or: of small
-discs that neither tuning nor telling saw (of 0.5 to 1.1 cm, on the thesis pad, and as many on the
+discs that neither tuning nor telling saw (of 0.5 to 3 cm, on the thesis pad, and as many on the
 kinds of pad that chose nothing), today's finds more than a hundredth within 2 cm that the tuned one
 does not. Or: on clean frames (an even load on the
 pad that is told) the mean time is more than a tenth above today's. Or: of centre or radius, over
@@ -44,6 +44,7 @@ from tactile_graph_tune.rerun import rerun
 from tactile_graph_tune.split import interval_of
 from tactile_graph_tune.table.kinds import Reals
 from tactile_graph_tune.table.record import Judged
+from tactile_graph_tune.tuned import CHOSEN, GIVEN
 
 PRODUCTS = ("adaptive", "locate")
 ERROR_MARGIN, CHOSEN_MARGIN = 0.05, 0.015
@@ -51,7 +52,7 @@ ERROR_MARGIN, CHOSEN_MARGIN = 0.05, 0.015
 SHARE_MARGIN, TIME_MARGIN, CLEAN_MARGIN = 0.01, 0.05, 0.1
 NEARLY_ALL = 0.95
 N_FRESH = 3
-N_SMALL = 120
+N_SMALL = 240
 ROUNDS = 3
 BY_HAND = {"legible": "by hand: no frame that the others were chosen by is missing so much"}
 """What is said above the guards that stay."""
@@ -168,6 +169,10 @@ def main() -> None:
         )
         others = discs(asked.frames, asked.seed + 5)
         against += vaguer(load(name), tuned.pipeline, others, asked.seed)
+        given, chosen = (tuned.points[k].choice.chosen for k in (GIVEN, CHOSEN))
+        if given == chosen:
+            print(f"{name} comes out with the numbers it has: any difference above is noise")
+            against = [*unknown(tuned)]
         text = shipped(name, tuned.text)
         print(f"\n{text}")
         for why in against:

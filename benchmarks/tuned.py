@@ -66,8 +66,8 @@ KNOWN = {
 }  # fmt: skip
 MARGIN, EQUAL = 0.025, 0.05
 """Shares by which an error may be greater than today's: in choosing, and to be called equal."""
-SMALL_CM, SMALL_G = (0.5, 0.7, 0.9, 1.1), (100.0, 300.0, 1000.0)
-"""Radii and weights of discs no larger than a few elements."""
+SMALL_CM, SMALL_G = (0.5, 0.7, 0.9, 1.1, 1.4, 1.8, 2.3, 3.0), (100.0, 300.0, 1000.0)
+"""Radii and weights of discs smaller than those of the thesis, from less than an element on."""
 DRAW = 1000
 """What seeds of two draws are apart."""
 EMPTY_G = 1e-6
@@ -215,7 +215,7 @@ NAMES_OF = ("footprint.count", "footprint.fraction", "near.known", "near.distanc
 
 
 def small_discs(n: int, seed: int) -> Frames:
-    """Return frames of discs no larger than a few elements, one in each."""
+    """Return frames of small discs, one in each."""
     things = [
         [{"shape": "disc", "weight_g": weight_g, "radius_cm": radius_cm}]
         for radius_cm in SMALL_CM
@@ -226,7 +226,7 @@ def small_discs(n: int, seed: int) -> Frames:
 
 
 def small_on(kind: str, n: int, seed: int) -> Frames:
-    """Return frames of discs no larger than a few elements, on a kind of pad."""
+    """Return frames of small discs on a kind of pad, one in each."""
     rng = np.random.default_rng([seed, 17, *kind.encode()])
     bench = Bench(replace(KINDS[kind], over_edge=False), rng)
     sizes = [(r, g) for r in SMALL_CM for g in SMALL_G]

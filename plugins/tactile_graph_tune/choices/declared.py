@@ -13,7 +13,13 @@ from tactile_graph.errors import UsageError
 from tactile_graph.inspect import NodeKind
 from tactile_graph.pipeline.document import read_document
 from tactile_graph.plugins.registry import installed
-from tactile_graph_tune.choices.comparisons import Comparison, is_free, taken_apart
+from tactile_graph_tune.choices.comparisons import (
+    HOLDS,
+    Comparison,
+    alternatives,
+    is_free,
+    taken_apart,
+)
 from tactile_graph_tune.choices.expanded import expanded
 from tactile_graph_tune.choices.text import Notes, text_of
 
@@ -132,9 +138,10 @@ class Declared:
         data = {k: data[k] for k in _in_order(data) if data[k] != ""}
         for place in self.places.values():
             if place.named:
-                data["conditions"][place.name] = " and ".join(
-                    c.text for c in chosen.get(place.name, ())
-                )
+                its = chosen.get(place.name, ())
+                alone = len(its) == 1 and alternatives(its[0].field) and its[0].sign == HOLDS
+                text = " and ".join(c.text for c in its)
+                data["conditions"][place.name] = text[1:-1] if alone else text
         for name in self.data["nodes"]:
             self._guard(data["nodes"][name], name, chosen)
         if self.ladder:
