@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
 
@@ -17,7 +17,13 @@ from tactile_graph_tune.choices.declared import Declared, Place, declared
 from tactile_graph_tune.request import Request
 from tactile_graph_tune.search.cascade import Cascade, Order, Predicted, bound
 from tactile_graph_tune.search.front import Choice, Front
-from tactile_graph_tune.search.levels import Known, LevelSearch, dials_of, known_levels
+from tactile_graph_tune.search.levels import (
+    Known,
+    LevelSearch,
+    dials_of,
+    known_levels,
+    unchanged_where_as_good,
+)
 from tactile_graph_tune.search.oracle import Bound, Options, options_of
 from tactile_graph_tune.search.questions import Questions, fields_by_place
 from tactile_graph_tune.search.search import Search, orders_of, pruned
@@ -94,17 +100,12 @@ class Tuning:
         table = self.variants[0].table.taken(self.split.reporting)
         return sum(table.mean(c.time_us) for c in table.nodes.values())
 
-    def known(self) -> dict[str, list[Known]]:
-        """Return for each place how surely its numbers are known."""
-        space = self.spaces[self.chosen.variant]
+    def known(self, choice: Choice) -> list[tuple[str, Known]]:
+        """Return for each number of a choice, with its place, how surely it is known."""
+        space = self.spaces[choice.variant]
         groups = self.split.groups[self.split.choosing]
         over_us = OVER * _whole_us(self.spaces[0])
-        found: dict[str, list[Known]] = {}
-        for place, its in known_levels(
-            space, self.chosen, self.goal, over_us, groups, self.request.seed
-        ):
-            found.setdefault(place, []).append(its)
-        return found
+        return known_levels(space, choice, self.goal, over_us, groups, self.request.seed)
 
     def bound(self) -> Bound:
         """Return the least that any choice could reach on the frames that report."""
@@ -151,7 +152,15 @@ def searched(
     if not request.levels:
         chosen = pruned(spaces[chosen.variant], chosen, limits, goal.by_time)
     front = merged(fronts, found, split.choosing, weigh, limits)
-    return Tuning(request, judged, every, split, variants, spaces, front, always, goal, chosen)
+    tuning = Tuning(request, judged, every, split, variants, spaces, front, always, goal, chosen)
+    if not request.levels:
+        return tuning
+
+    def allowed(choice: Choice) -> bool:
+        return all(weigh(choice, rows).within(goal.limits(rows, weigh)) for rows in folds)
+
+    chosen = unchanged_where_as_good(chosen, goal.given.chosen, tuning.known, allowed)
+    return replace(tuning, chosen=chosen)
 
 
 def _means(variants: Sequence[Variant], choice: Choice, rows: Rows) -> Means:

@@ -7,7 +7,7 @@ known.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -55,6 +55,11 @@ class Dial:
     at: int
     whole: Comparison
     part: int
+
+    @property
+    def key(self) -> tuple[str, int, int]:
+        """Where it stands."""
+        return self.place, self.at, self.part
 
     @property
     def comparison(self) -> Comparison:
@@ -195,6 +200,36 @@ def known_levels(
         its = Known(dial.comparison, float(low), float(high), len(between) / len(levels))
         found.append((dial.place, its))
     return found
+
+
+def unchanged_where_as_good(
+    choice: Choice,
+    given: Chosen,
+    known: Callable[[Choice], Sequence[tuple[str, Known]]],
+    allowed: Callable[[Choice], bool],
+) -> Choice:
+    """Return a choice with every number as it was given that the frames do not speak against.
+
+    Parameters
+    ----------
+    choice : Choice
+        Of the same guards as ``given``, with other numbers.
+    given : mapping
+    known : callable
+        Gives how surely the numbers of a choice are known.
+    allowed : callable
+        Tells whether a choice may be taken.
+    """
+    for old in dials_of(given):
+        new = next(d for d in dials_of(choice.chosen) if d.key == old.key)
+        level = old.comparison.level
+        its = [
+            k for place, k in known(choice) if (place, k.comparison) == (new.place, new.comparison)
+        ]
+        if all(k.low <= level <= k.high for k in its):
+            back = replace(choice, chosen=new.put(choice.chosen, level))
+            choice = back if allowed(back) else choice
+    return choice
 
 
 class _Draws(NamedTuple):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,14 @@ from helpers_tune import LADDER, frames
 from tactile_graph import loads
 from tactile_graph_tune import Request
 from tactile_graph_tune.choices.comparisons import Comparison
-from tactile_graph_tune.search.levels import Dial, dials_of, levels_of
+from tactile_graph_tune.search.front import Choice
+from tactile_graph_tune.search.levels import (
+    Dial,
+    Known,
+    dials_of,
+    levels_of,
+    unchanged_where_as_good,
+)
 from tactile_graph_tune.searching import Tuning, searched
 
 pytestmark = pytest.mark.usefixtures("hand_made")
@@ -68,7 +76,7 @@ def test_a_number_that_stops_what_should_pass_is_turned() -> None:
 
 def test_a_number_that_nothing_speaks_against_stays_and_is_said_to_be_anything() -> None:
     its = tuned(WASTEFUL.replace("count > 4", "count > 0"))
-    count, x = its.known()["touched"]
+    (_, count), (_, x) = [k for k in its.known(its.chosen) if k[0] == "touched"]
     stays = [d.comparison.level for d in dials_of({"t": its.chosen.chosen["touched"]})][1]
     assert stays == 90.0
     assert x.share == 1.0
@@ -95,3 +103,22 @@ def test_levels_are_those_between_values_and_its_own_first() -> None:
     assert levels_of(dial, table)[0] == 1.5
     known = replace(table, fields={k: table.fields[k] for k in ("footprint.count",)})
     assert set(levels_of(dial, known)) >= {1.5, 2.0, 5.0}
+
+
+def test_what_is_as_good_stays_and_the_rest_is_turned() -> None:
+    given = {"touched": (Comparison("load.total", ">", 1.0),),
+             "good": (Comparison("load.total", "<", 9.0), Comparison("load.x", "<", 5.0))}  # fmt: skip
+    found = {"touched": (Comparison("load.total", ">", 3.0),),
+             "good": (Comparison("load.total", "<", 7.0), Comparison("load.x", "<", 4.0))}  # fmt: skip
+    ranges = [(0.5, 4.0), (6.0, 8.0), (3.0, 6.0)]
+
+    def known(choice: Choice) -> list[tuple[str, Known]]:
+        dials = dials_of(choice.chosen)
+        return [(d.place, Known(d.comparison, *r, 0.5)) for d, r in zip(dials, ranges, strict=True)]
+
+    def kept(allowed: Callable[[Choice], bool]) -> list[float]:
+        its = unchanged_where_as_good(Choice(0, (), found), given, known, allowed)
+        return [d.comparison.level for d in dials_of(its.chosen)]
+
+    assert kept(lambda choice: True) == [1.0, 7.0, 5.0]
+    assert kept(lambda choice: choice.chosen["touched"][0].level > 2.0) == [3.0, 7.0, 5.0]
