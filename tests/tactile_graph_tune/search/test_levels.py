@@ -12,6 +12,7 @@ from helpers_tune import LADDER, frames
 from tactile_graph import loads
 from tactile_graph_tune import Request
 from tactile_graph_tune.choices.comparisons import Comparison
+from tactile_graph_tune.choices.declared import Chosen
 from tactile_graph_tune.search.front import Choice
 from tactile_graph_tune.search.levels import (
     Dial,
@@ -106,10 +107,11 @@ def test_levels_are_those_between_values_and_its_own_first() -> None:
 
 
 def test_what_is_as_good_stays_and_the_rest_is_turned() -> None:
-    given = {"touched": (Comparison("load.total", ">", 1.0),),
-             "good": (Comparison("load.total", "<", 9.0), Comparison("load.x", "<", 5.0))}  # fmt: skip
-    found = {"touched": (Comparison("load.total", ">", 3.0),),
-             "good": (Comparison("load.total", "<", 7.0), Comparison("load.x", "<", 4.0))}  # fmt: skip
+    def guards(more: float, less: float, x: float) -> Chosen:
+        total = Comparison("load.total", ">", more), Comparison("load.total", "<", less)
+        return {"touched": total[:1], "good": (total[1], Comparison("load.x", "<", x))}
+
+    given, found = guards(1.0, 9.0, 5.0), guards(3.0, 7.0, 4.0)
     ranges = [(0.5, 4.0), (6.0, 8.0), (3.0, 6.0)]
 
     def known(choice: Choice) -> list[tuple[str, Known]]:
