@@ -61,7 +61,7 @@ def test_nothing_changes_but_numbers() -> None:
 
     assert shape(chosen) == shape(given)
     assert all(shape(p.choice) == shape(given) for p in its.front.points)
-    assert len(its.front.points) > 1
+    assert its.front.n_weighed > 50
     for point in its.front.points:
         text = its.variants[0].declared.text(point.choice.order, point.choice.chosen)
         loads(text)
