@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -108,3 +109,38 @@ def test_frames_in_none_of_which_anything_lies_are_refused(hand_made):
                f"empty=[{empty}]", *QUICK)  # fmt: skip
     assert got.exit_code == 2
     assert "nothing lies in any of the 12 frames that choose" in " ".join(got.output.split())
+
+
+@pytest.mark.slow
+def test_only_numbers_are_chosen_where_that_is_asked_for(hand_made):
+    got = call("tune", "ladder.yaml", "--frames", "24", "--rounds", "1", "--levels",
+               "-o", "out.yaml")  # fmt: skip
+    assert got.exit_code == 0, got.output
+    assert " is as good" in " ".join(got.output.split())
+    text = Path("out.yaml").read_text()
+    assert text.startswith("# Numbers in guards by 'tactile-graph tune ladder --levels': ")
+
+    def bare(text: str) -> list[str]:
+        kept = [re.sub(r"\b\d+(\.\d+)?\b", "N", line) for line in text.splitlines()]
+        left = ("#", "pipeline:", "evolves:", "about:")
+        return [line for line in kept if not line.lstrip().startswith(left)]
+
+    swapped = (("touched and volt", "volt and touched"),
+               ("load.total < 9 and touched", "touched and load.total < 9"))  # fmt: skip
+    given = LADDER
+    for one, other in swapped:
+        given = given.replace(one, other)
+    assert bare(text) == bare(given)
+
+
+def test_numbers_alone_are_refused_where_no_guard_has_one(hand_made):
+    Path("none.yaml").write_text(
+        LADDER.replace("footprint.count > 0", "load.total > load.x_cm - 9")
+        .replace("load.total < 9 and ", "")
+        .replace(", when: first.radius_cm > 0.9", "")
+    )
+    got = call("tune", "none.yaml", "--frames", "24", "--rounds", "1", "--levels")
+    assert got.exit_code == 2
+    assert "--levels: no guard of pipeline 'ladder' that may be chosen compares" in " ".join(
+        got.output.split()
+    )
