@@ -47,8 +47,9 @@ from tactile_graph_tune.table.record import Judged
 from tactile_graph_tune.tuned import CHOSEN, GIVEN
 
 PRODUCTS = ("adaptive", "locate")
-ERROR_MARGIN, CHOSEN_MARGIN = 0.05, 0.015
-"""Of today's error: what may be shipped, and what is allowed in choosing."""
+ERROR_MARGIN, CHOSEN_MARGIN = 0.05, 0.0
+"""Of today's error: what may be shipped, and what is allowed in choosing: none, since all that is
+allowed there is used up, and a few percent more on other frames come on top."""
 SHARE_MARGIN, TIME_MARGIN, CLEAN_MARGIN = 0.01, 0.05, 0.1
 NEARLY_ALL = 0.95
 N_FRESH = 3
