@@ -102,10 +102,9 @@ class Tuning:
 
     def known(self, choice: Choice) -> list[tuple[str, Known]]:
         """Return for each number of a choice, with its place, how surely it is known."""
-        space = self.spaces[choice.variant]
         groups = self.split.groups[self.split.choosing]
         over_us = OVER * _whole_us(self.spaces[0])
-        return known_levels(space, choice, self.goal, over_us, groups, self.request.seed)
+        return known_levels(self.spaces, choice, self.goal, over_us, groups, self.request.seed)
 
     def bound(self) -> Bound:
         """Return the least that any choice could reach on the frames that report."""

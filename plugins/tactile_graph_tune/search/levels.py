@@ -14,13 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tactile_graph_tune.choices.comparisons import (
-    HOLDS,
-    HOLDS_NOT,
-    Comparison,
-    alternatives,
-    one_of_them,
-)
+from tactile_graph_tune.choices.comparisons import Comparison, alternatives, one_of_them
 from tactile_graph_tune.choices.declared import Chosen
 from tactile_graph_tune.search.cascade import Asked
 from tactile_graph_tune.search.front import Choice
@@ -30,6 +24,8 @@ from tactile_graph_tune.search.weigher import GAIN, Aim, Space, Weigher
 from tactile_graph_tune.table.columns import Table
 from tactile_graph_tune.table.kinds import Flags, Means, Reals
 
+ORDERED = ("<", "<=", ">", ">=")
+"""Signs of a comparison whose number is a level: what must be equal has no other."""
 MOST_SWEEPS = 4
 RESAMPLES = 400
 TAIL = 2.5
@@ -111,7 +107,7 @@ def dials_of(chosen: Chosen) -> Iterator[Dial]:
     for place, comparisons in chosen.items():
         for at, whole in enumerate(comparisons):
             for part, its in enumerate(alternatives(whole.field) or (whole,)):
-                if its.sign not in (HOLDS, HOLDS_NOT):
+                if its.sign in ORDERED:
                     yield Dial(place, at, whole, part)
 
 
@@ -161,14 +157,14 @@ def without(chosen: Chosen, dial: Dial) -> Chosen:
 
 
 def known_levels(
-    space: Space, choice: Choice, goal: Goal, over_us: float, groups: Rows, seed: int
+    spaces: Sequence[Space], choice: Choice, goal: Goal, over_us: float, groups: Rows, seed: int
 ) -> list[tuple[str, Known]]:
     """Return for each number of a choice, with its place, how surely it is known.
 
     Parameters
     ----------
-    space : Space
-        Of the frames that choose.
+    spaces : sequence of Space
+        Of the frames that choose, one a variant.
     choice : Choice
     goal : Goal
     over_us : float
@@ -178,7 +174,8 @@ def known_levels(
     seed : int
     """
     draws = _draws(groups, seed)
-    given = _drawn(space, goal.given, {}, draws)
+    given = _drawn(spaces[goal.given.variant], goal.given, {}, draws)
+    space = spaces[choice.variant]
     found = []
     for dial in dials_of(choice.chosen):
         levels = levels_of(dial, space.table)

@@ -13,6 +13,7 @@ from tactile_graph import loads
 from tactile_graph_tune import Request
 from tactile_graph_tune.choices.comparisons import Comparison
 from tactile_graph_tune.choices.declared import Chosen
+from tactile_graph_tune.request import Free
 from tactile_graph_tune.search.front import Choice
 from tactile_graph_tune.search.levels import (
     Dial,
@@ -38,16 +39,16 @@ def tuned(text: str = LADDER, n: int = 48, **asked: object) -> Tuning:
 
 
 def test_dials_are_the_numbers_of_comparisons_and_of_what_an_or_joins() -> None:
-    flag = Comparison("load.ok", "is true", 0.0)
+    flag, same = Comparison("load.ok", "is true", 0.0), Comparison("load.kind", "==", 2.0)
     plain, either = Comparison("load.total", "<", 9.0), Comparison(EITHER, "is true", 0.0)
-    chosen = {"fixed": (plain, flag), "touched": (either,)}
+    chosen = {"fixed": (plain, flag, same), "touched": (either,)}
     dials = list(dials_of(chosen))
     assert [(d.place, d.comparison.text) for d in dials] == [
         ("fixed", "load.total < 9"),
         ("touched", "footprint.count > 4"),
         ("touched", "footprint.area_cm2 > 90"),
     ]
-    assert dials[0].put(chosen, 5.0) == {**chosen, "fixed": (plain._replace(level=5.0), flag)}
+    assert dials[0].put(chosen, 5.0) == {**chosen, "fixed": (plain._replace(level=5.0), flag, same)}
     assert dials[2].turned(7.5).field == "(footprint.count > 4 or footprint.area_cm2 > 7.5)"
 
 
@@ -124,3 +125,13 @@ def test_what_is_as_good_stays_and_the_rest_is_turned() -> None:
 
     assert kept(lambda choice: True) == [1.0, 7.0, 5.0]
     assert kept(lambda choice: choice.chosen["touched"][0].level > 2.0) == [3.0, 7.0, 5.0]
+
+
+def test_limits_are_those_of_the_file_whatever_settings_are_chosen() -> None:
+    heavy = LADDER.replace("level_v: 0.5", "level_v: 5").replace(", with: {fail_at_x: 1}", "")
+    its = tuned(heavy, most_error=9.0, free=(Free("footprint.level_v", (0.5,)),))
+    assert its.means(its.goal.given, its.split.choosing).missed == 1.0  # nothing is that heavy
+    other = its.variants[1]
+    found = its.known(Choice(1, other.given.order, other.given.chosen))
+    (count,) = [k for place, k in found if place == "touched"]
+    assert count.low >= 5.0  # so anything may be missed: what stops most is cheapest
