@@ -12,12 +12,13 @@ from tactile_graph.compiled.kernel import (
     plain_and_noted,
     warm_up,
 )
-from tactile_graph.compiled.meanwhile import answered_meanwhile
+from tactile_graph.compiled.meanwhile import Meanwhile, answered_meanwhile
 
 __all__ = [
     "SWITCH_AFTER_CALLS",
     "SWITCH_AFTER_ELEMENTS",
     "Kernel",
+    "Meanwhile",
     "Work",
     "answered_meanwhile",
     "compiled_as_is",

@@ -62,9 +62,12 @@ class Meanwhile:
     ----------
     under_way : subprocess.Popen or None
         The process, once there is something for it to do.
+    patience_s : float
+        Time that plain code may take in all; none where it is negative.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, patience_s: float = PATIENCE_S) -> None:
+        self.patience_s = patience_s
         self.under_way: subprocess.Popen[bytes] | None = None
         self._looked_s: dict[Call, float] = {}
         self._spent_s = 0.0
@@ -90,7 +93,7 @@ class Meanwhile:
         if looked_s is not None and now_s - looked_s < LOOK_S:
             return False
         self._looked_s[call] = now_s
-        if call.on_disk() or self._spent_s > PATIENCE_S:
+        if call.on_disk() or self._spent_s > self.patience_s:
             return True
         return not self._asked(call) if looked_s is None else not self._works()
 
@@ -131,7 +134,9 @@ class Meanwhile:
 
 
 @contextmanager
-def answered_meanwhile(tell: Callable[[int], None] | None = None) -> Iterator[None]:
+def answered_meanwhile(
+    tell: Callable[[int], None] | None = None, patience_s: float = PATIENCE_S
+) -> Iterator[Meanwhile | None]:
     """Answer by plain code for as long as another process compiles what is not on disk yet.
 
     The process outlives a run that ends well, so that the next one finds the machine code; it is
@@ -142,15 +147,22 @@ def answered_meanwhile(tell: Callable[[int], None] | None = None) -> Iterator[No
     ----------
     tell : callable, optional
         Called at the end with the number of the process, if it still works.
+    patience_s : float
+        Time that plain code may take in all before it is waited for the compiler.
+
+    Yields
+    ------
+    Meanwhile or None
+        Whose patience may be changed; None where there is none.
     """
     if (os.cpu_count() or 1) < 2 or kernels.mode() != "auto":
-        yield
+        yield None
         return
-    meanwhile = Meanwhile()
+    meanwhile = Meanwhile(patience_s)
     kernels.answering.append(meanwhile.answer)
     finish = False
     try:
-        yield
+        yield meanwhile
         finish = True
     finally:
         kernels.answering.remove(meanwhile.answer)

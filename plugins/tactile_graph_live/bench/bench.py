@@ -5,12 +5,14 @@ from __future__ import annotations
 import pickle
 import time
 from collections.abc import Callable, Iterator
+from math import inf
 from threading import Condition
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph import Frame, Pipeline, Result
+from tactile_graph.compiled import Meanwhile, answered_meanwhile
 from tactile_graph.errors import TactileGraphError, text_of
 from tactile_graph.inspect import check_frame, make_plan
 from tactile_graph.live import Beside, LiveResult, LiveRun
@@ -62,6 +64,7 @@ class Bench:
         self._changed = Condition()
         self._next_picture_ns = self._next_summary_ns = 0
         self._report = Report(listener=lambda where, what: self._say(f"{where}: {what}", "warning"))
+        self._meanwhile: Meanwhile | None = None
         self._beside: Beside | None = None
         if order.beside:
             self._beside = Beside(pickle.loads(order.beside), seed=order.seed)
@@ -117,8 +120,10 @@ class Bench:
     def _answer_all(self) -> str:
         """Answer the frames of one source; return what went wrong, if anything."""
         try:
-            for live in self._run:
-                self._answered(live)
+            with answered_meanwhile(patience_s=inf) as self._meanwhile:
+                self._time_counts(self._pipeline)
+                for live in self._run:
+                    self._answered(live)
         except TactileGraphError as error:
             return str(error)
         except Exception as error:  # a source or a step may raise anything
@@ -126,6 +131,12 @@ class Bench:
         finally:
             self._player.end()
         return ""
+
+    def _time_counts(self, pipeline: Pipeline) -> None:
+        """Wait for the compiler where times are learnt: those of plain code would be kept."""
+        timed = (self._order.deadline_us or pipeline.deadline_us) is not None
+        if self._meanwhile is not None and (timed or self._beside is not None):
+            self._meanwhile.patience_s = -1.0
 
     def _answered(self, live: Live) -> None:
         """Take down a frame that is done."""
@@ -244,6 +255,7 @@ class Bench:
         try:
             pipeline: Pipeline = pickle.loads(message.pickled)
             self._next_photographer = Photographer(pipeline, message.version)  # before a frame ran
+            self._time_counts(pipeline)
             if restart:
                 anew = pipeline.runner(seed=self._order.seed).anew  # that it can be made
             else:

@@ -568,3 +568,30 @@ def test_ten_viewers_get_the_newest_and_cost_no_frame(folder: Path) -> None:
             if pulse["shed"] == before["shed"] and pulse["rate_hz"] > 50:
                 return
         raise AssertionError(f"ten viewers cost frames: {before}, {pulse}")
+
+
+def compilers(command: Command) -> list[int]:
+    """Return the processes that compile for the bench."""
+    task = Path(f"/proc/{command.bench()}/task")
+    numbers = [c for t in task.glob("*/children") for c in t.read_text().split()]
+    return [
+        int(c) for c in numbers if b"compiled.service" in Path(f"/proc/{c}/cmdline").read_bytes()
+    ]
+
+
+@pytest.mark.parametrize("deadline", [(), ("--deadline", "1s")])
+def test_on_an_empty_cache_only_what_is_timed_waits_for_the_compiler(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, deadline: tuple[str, ...]
+) -> None:
+    """Plain code answers meanwhile; times that a deadline is kept by are those of machine code."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "empty"))
+    monkeypatch.delenv("TACTILE_GRAPH_KERNELS", raising=False)
+    with running(tmp_path, "bayes-smooth", "--rate", "5", *deadline) as command:
+        with Page(command, "results") as page:
+            page.socket.recv(timeout=120)
+            working = compilers(command)
+        assert bool(working) is not bool(deadline)
+        code, _ = command.end()
+    assert code == 0
+    for number in working:  # it would work for a minute at most, for the next start
+        os.kill(number, signal.SIGTERM)
