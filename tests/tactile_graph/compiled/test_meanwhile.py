@@ -145,11 +145,11 @@ def test_a_record_comes_back_with_python_s_own_numbers(world: World) -> None:
 def test_it_is_compiled_here_or_answered_plainly_where_waiting_gains_nothing(
     why: str, world: World, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    x = X
+    x, patience_s = X, meanwhile.PATIENCE_S
     if why == "large":
         x = np.zeros(meanwhile.MOST_ELEMENTS + 1)
     elif why == "patience":
-        monkeypatch.setattr(meanwhile, "PATIENCE_S", -1.0)
+        patience_s = -1.0
     elif why == "ended":
         world.process.ended = True
     elif why == "one processor":
@@ -162,7 +162,7 @@ def test_it_is_compiled_here_or_answered_plainly_where_waiting_gains_nothing(
             outer.call(x)
         outer.call(x)
     else:
-        with answered_meanwhile():
+        with answered_meanwhile(patience_s=patience_s):
             outer.call(x)
     assert world.compiled_here == ([] if why == "plain" else ["outer"])
 

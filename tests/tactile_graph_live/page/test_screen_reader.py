@@ -27,7 +27,7 @@ ROLES = {
 }  # fmt: skip
 """What it calls the roles; of those not here, the name must do."""
 LOADING = re.compile(r"Loading\.|Finished loading")
-LOADS = 4
+LOADS = 8
 """How often the page is opened at most."""
 
 
