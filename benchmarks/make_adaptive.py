@@ -17,13 +17,12 @@ more than a twentieth above today's; that of missed objects, or of answers where
 than a hundredth of the frames; that of the time more than a twentieth above today's. Or: of small
 discs that neither tuning nor telling saw (of 0.5 to 3 cm, on the thesis pad, and as many on the
 kinds of pad that chose nothing), today's finds more than a hundredth within 2 cm that the tuned one
-does not. Or: on clean frames (an even load on the
-pad that is told) the mean time is more than a tenth above today's. Or: of centre or radius, over
-discs of either simulator that both answer, the upper end of the interval is more than a twentieth
-above today's (what counts in choosing is the radius of ``adaptive``, on which its fits differ most,
-and the centre of ``locate``). Or: of a number nearly all
-others that there are to choose from are as good in 95 of 100 resamples, so that frames do not tell
-it.
+does not. Or: on clean frames (an even load on the pad that is told) the mean time is more than a
+tenth above today's. Or: of centre or radius, over discs of either simulator that both answer, the
+upper end of the interval is more than a twentieth above today's (what counts in choosing is the
+radius of ``adaptive``, on which its fits differ most, and the centre of ``locate``). Or: of a
+number nearly all others that there are to choose from are as good in 95 of 100 resamples, so that
+frames do not tell it.
 """
 
 from __future__ import annotations

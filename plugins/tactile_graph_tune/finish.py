@@ -27,7 +27,7 @@ MOST_RIVALS = 3
 def finished(tuning: Tuning, told: Told) -> Tuned:
     """Return the report of a search, its last few choices run and timed."""
     last = {GIVEN: tuning.variants[0].given, ALWAYS: tuning.always, CHOSEN: tuning.chosen}
-    known = tuning.known(tuning.chosen)
+    known = tuning.resamples().of_all(tuning.chosen)
     worths = tuple(
         replace(_worth(tuning, place), known=tuple(its for at, its in known if at == place))
         for place in tuning.chosen.chosen

@@ -18,10 +18,9 @@ from tactile_graph_tune.request import Request
 from tactile_graph_tune.search.cascade import Cascade, Order, Predicted, bound
 from tactile_graph_tune.search.front import Choice, Front
 from tactile_graph_tune.search.levels import (
-    Known,
     LevelSearch,
+    Resamples,
     dials_of,
-    known_levels,
     unchanged_where_as_good,
 )
 from tactile_graph_tune.search.oracle import Bound, Options, options_of
@@ -100,11 +99,11 @@ class Tuning:
         table = self.variants[0].table.taken(self.split.reporting)
         return sum(table.mean(c.time_us) for c in table.nodes.values())
 
-    def known(self, choice: Choice) -> list[tuple[str, Known]]:
-        """Return for each number of a choice, with its place, how surely it is known."""
+    def resamples(self) -> Resamples:
+        """Return who tells how surely numbers are known."""
         groups = self.split.groups[self.split.choosing]
         over_us = OVER * _whole_us(self.spaces[0])
-        return known_levels(self.spaces, choice, self.goal, over_us, groups, self.request.seed)
+        return Resamples(self.spaces, self.goal, over_us, groups, self.request.seed)
 
     def bound(self) -> Bound:
         """Return the least that any choice could reach on the frames that report."""
@@ -158,7 +157,8 @@ def searched(
     def allowed(choice: Choice) -> bool:
         return all(weigh(choice, rows).within(goal.limits(rows, weigh)) for rows in folds)
 
-    chosen = unchanged_where_as_good(chosen, goal.given.chosen, tuning.known, allowed)
+    known = tuning.resamples().known
+    chosen = unchanged_where_as_good(chosen, goal.given.chosen, known, allowed)
     return replace(tuning, chosen=chosen)
 
 

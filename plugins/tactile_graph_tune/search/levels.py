@@ -156,16 +156,13 @@ def without(chosen: Chosen, dial: Dial) -> Chosen:
     return {**chosen, dial.place: (*its[: dial.at], *its[dial.at + 1 :])}
 
 
-def known_levels(
-    spaces: Sequence[Space], choice: Choice, goal: Goal, over_us: float, groups: Rows, seed: int
-) -> list[tuple[str, Known]]:
-    """Return for each number of a choice, with its place, how surely it is known.
+class Resamples:
+    """Tells how surely numbers are known.
 
     Parameters
     ----------
     spaces : sequence of Space
         Of the frames that choose, one a variant.
-    choice : Choice
     goal : Goal
     over_us : float
         What a whole unit over a limit costs.
@@ -173,36 +170,45 @@ def known_levels(
         Frames of one group are drawn together.
     seed : int
     """
-    draws = _draws(groups, seed)
-    given = _drawn(spaces[goal.given.variant], goal.given, {}, draws)
-    space = spaces[choice.variant]
-    found = []
-    for dial in dials_of(choice.chosen):
+
+    def __init__(
+        self, spaces: Sequence[Space], goal: Goal, over_us: float, groups: Rows, seed: int
+    ) -> None:
+        self._spaces, self._goal = spaces, goal
+        self._draws = _draws(groups, seed)
+        given = _drawn(spaces[goal.given.variant], goal.given, {}, self._draws)
+        self._aim = Aim(0.0, goal.limits_of(given), over_us)
+
+    def known(self, choice: Choice, dial: Dial) -> Known | None:
+        """Return how surely a number of a choice is known; None where there is no other."""
+        space = self._spaces[choice.variant]
         levels = levels_of(dial, space.table)
         if len(levels) < 2:
-            continue
+            return None
         asked = {dial.place: [asked_by(dial, space.table, levels)]}
         bare = replace(choice, chosen=without(choice.chosen, dial))
-        means = _drawn(space, bare, asked, draws)
-        aim = Aim(0.0, goal.limits_of(given), over_us)
-        sought = means.error if goal.by_time else means.time_us
-        objective = aim.over(means) + sought
+        means = _drawn(space, bare, asked, self._draws)
+        sought = means.error if self._goal.by_time else means.time_us
+        objective = self._aim.over(means) + sought
         as_good = objective <= objective.min(axis=0) * (1.0 + GAIN)
         of = np.array(levels)[:, None]
-        low = np.percentile(np.where(as_good, of, np.inf).min(axis=0), TAIL, method="nearest")
-        high = np.percentile(
-            np.where(as_good, of, -np.inf).max(axis=0), 100.0 - TAIL, method="nearest"
-        )
+        lows = np.where(as_good, of, np.inf).min(axis=0)
+        highs = np.where(as_good, of, -np.inf).max(axis=0)
+        low = float(np.percentile(lows, TAIL, method="nearest"))
+        high = float(np.percentile(highs, 100.0 - TAIL, method="nearest"))
         between = [level for level in levels if low <= level <= high]
-        its = Known(dial.comparison, float(low), float(high), len(between) / len(levels))
-        found.append((dial.place, its))
-    return found
+        return Known(dial.comparison, low, high, len(between) / len(levels))
+
+    def of_all(self, choice: Choice) -> list[tuple[str, Known]]:
+        """Return for each number of a choice, with its place, how surely it is known."""
+        found = ((dial.place, self.known(choice, dial)) for dial in dials_of(choice.chosen))
+        return [(place, its) for place, its in found if its is not None]
 
 
 def unchanged_where_as_good(
     choice: Choice,
     given: Chosen,
-    known: Callable[[Choice], Sequence[tuple[str, Known]]],
+    known: Callable[[Choice, Dial], Known | None],
     allowed: Callable[[Choice], bool],
 ) -> Choice:
     """Return a choice with every number as it was given that the frames do not speak against.
@@ -213,17 +219,15 @@ def unchanged_where_as_good(
         Of the same guards as ``given``, with other numbers.
     given : mapping
     known : callable
-        Gives how surely the numbers of a choice are known.
+        Gives how surely a number of a choice is known.
     allowed : callable
         Tells whether a choice may be taken.
     """
     for old in dials_of(given):
         new = next(d for d in dials_of(choice.chosen) if d.key == old.key)
         level = old.comparison.level
-        its = [
-            k for place, k in known(choice) if (place, k.comparison) == (new.place, new.comparison)
-        ]
-        if all(k.low <= level <= k.high for k in its):
+        its = known(choice, new)
+        if its is None or its.low <= level <= its.high:
             back = replace(choice, chosen=new.put(choice.chosen, level))
             choice = back if allowed(back) else choice
     return choice

@@ -78,7 +78,7 @@ def test_a_number_that_stops_what_should_pass_is_turned() -> None:
 
 def test_a_number_that_nothing_speaks_against_stays_and_is_said_to_be_anything() -> None:
     its = tuned(WASTEFUL.replace("count > 4", "count > 0"))
-    (_, count), (_, x) = [k for k in its.known(its.chosen) if k[0] == "touched"]
+    (_, count), (_, x) = [k for k in its.resamples().of_all(its.chosen) if k[0] == "touched"]
     stays = [d.comparison.level for d in dials_of({"t": its.chosen.chosen["touched"]})][1]
     assert stays == 90.0
     assert x.share == 1.0
@@ -115,9 +115,9 @@ def test_what_is_as_good_stays_and_the_rest_is_turned() -> None:
     given, found = guards(1.0, 9.0, 5.0), guards(3.0, 7.0, 4.0)
     ranges = [(0.5, 4.0), (6.0, 8.0), (3.0, 6.0)]
 
-    def known(choice: Choice) -> list[tuple[str, Known]]:
-        dials = dials_of(choice.chosen)
-        return [(d.place, Known(d.comparison, *r, 0.5)) for d, r in zip(dials, ranges, strict=True)]
+    def known(choice: Choice, dial: Dial) -> Known:
+        at = [d.key for d in dials_of(choice.chosen)].index(dial.key)
+        return Known(dial.comparison, *ranges[at], 0.5)
 
     def kept(allowed: Callable[[Choice], bool]) -> list[float]:
         its = unchanged_where_as_good(Choice(0, (), found), given, known, allowed)
@@ -132,6 +132,6 @@ def test_limits_are_those_of_the_file_whatever_settings_are_chosen() -> None:
     its = tuned(heavy, most_error=9.0, free=(Free("footprint.level_v", (0.5,)),))
     assert its.means(its.goal.given, its.split.choosing).missed == 1.0  # nothing is that heavy
     other = its.variants[1]
-    found = its.known(Choice(1, other.given.order, other.given.chosen))
+    found = its.resamples().of_all(Choice(1, other.given.order, other.given.chosen))
     (count,) = [k for place, k in found if place == "touched"]
     assert count.low >= 5.0  # so anything may be missed: what stops most is cheapest
