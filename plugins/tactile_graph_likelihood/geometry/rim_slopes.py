@@ -9,7 +9,15 @@ import math
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import Box, covered_by
-from tactile_graph_likelihood.geometry.outlines import DISC, OVAL, RECTANGLE, Values, unknowns
+from tactile_graph_likelihood.geometry.outlines import (
+    DISC,
+    ELLIPSE,
+    OVAL,
+    RECTANGLE,
+    Values,
+    unknowns,
+)
+from tactile_graph_likelihood.geometry.oval import to_oval
 
 Slopes = tuple[float, float, float, float, float]
 """Along each of an outline's numbers, 0 where it has fewer."""
@@ -21,12 +29,12 @@ LEAST_SLOPE = 1e-12
 @compiled_as_is
 def has_slopes(kind: int) -> bool:
     """Return whether `covered_with_slopes` knows an outline's kind."""
-    return kind in (DISC, RECTANGLE, OVAL)
+    return kind in (DISC, ELLIPSE, OVAL, RECTANGLE)
 
 
 @compiled_as_is
 def covered_with_slopes(kind: int, p: Values, grid: Values, box: Box, slopes: Values) -> Values:
-    """Return `covered.covered` of a disc, rectangle or oval, and add its slope along each number.
+    """Return `covered.covered` of an outline that has slopes, and add them, along each number.
 
     Parameters
     ----------
@@ -54,7 +62,10 @@ def _add_slopes(
     """Add the slopes of the shares of elements of a side, times a weight."""
     more = 0.5 * (element - grid[3])
     left, top = grid[0] + box[1] * grid[2] - more, grid[1] + box[0] * grid[2] - more
-    scale, numbers = weight / (element * element), unknowns(kind, 0)
+    scale, numbers, oval = weight / (element * element), unknowns(kind, 0), p
+    if kind == ELLIPSE:
+        oval = p.copy()
+        to_oval(oval)
     for i in range(box[2]):
         for j in range(box[3]):
             if not 0.0 < share[i, j] < 1.0:
@@ -64,6 +75,8 @@ def _add_slopes(
                 found = _of_disc(p[2], x, y, element, share[i, j])
             elif kind == OVAL:
                 found = _of_oval(p, x, y, element, share[i, j])
+            elif kind == ELLIPSE:
+                found = _of_ellipse(p, _of_oval(oval, x, y, element, share[i, j]))
             else:
                 found = _of_rectangle(p, x, y, element)
             for k in range(numbers):
@@ -125,6 +138,15 @@ def _of_oval(p: Values, x: float, y: float, element: float, share: float) -> Slo
         by_first - by_second,
         across,
     )
+
+
+@compiled_as_is
+def _of_ellipse(p: Values, of_oval: Slopes) -> Slopes:
+    """Return slopes along half axes and angle, from those along the oval's numbers."""
+    right, down, wider, along, across = of_oval
+    cos, sin = math.cos(2.0 * p[4]), math.sin(2.0 * p[4])
+    longer, turned = along * cos + across * sin, across * cos - along * sin
+    return right, down, 0.5 * (wider + longer), 0.5 * (wider - longer), (p[2] - p[3]) * turned
 
 
 @compiled_as_is

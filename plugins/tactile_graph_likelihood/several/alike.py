@@ -56,8 +56,10 @@ def alikeness(log_sizes: Values, log_loads: Values, prior: Values) -> float:
     n = len(log_loads)
     if n < 2:
         return 0.0
-    alone = math.log(math.log(prior[LARGEST] / prior[SMALLEST]))
-    off = (log_loads - prior[MIDDLE]) / prior[SPREAD]
-    alone += math.log(prior[SPREAD]) + HALF_LN_TWO_PI
+    spread, middle = float(prior[SPREAD]), float(prior[MIDDLE])
+    alone: float = math.log(math.log(prior[LARGEST] / prior[SMALLEST]))
+    alone += math.log(spread) + HALF_LN_TWO_PI
+    off = [(load - middle) / spread for load in log_loads.tolist()]
     together = log_alike(log_sizes) + log_alike(log_loads)
-    return together + (n - 1) * alone + 0.5 * float(off @ off - off.mean() ** 2)
+    squared = sum(one * one for one in off) - (sum(off) / n) ** 2
+    return together + (n - 1) * alone + 0.5 * float(squared)

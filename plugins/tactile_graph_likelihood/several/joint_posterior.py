@@ -26,11 +26,12 @@ from tactile_graph_likelihood.single.information import (
     SLIVER,
     STEP,
     Information,
+    mirror,
     scatter_of,
     score_of,
-    steps_of,
+    shares_with_slopes,
 )
-from tactile_graph_likelihood.single.load_shares import foam_margin, shares_around, shares_of
+from tactile_graph_likelihood.single.load_shares import foam_margin, shares_around
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.problem import Places
 
@@ -91,6 +92,13 @@ class Coverage(NamedTuple):
 def add_outline(problem: JointProblem, outlines: Outlines, k: int) -> None:
     """Add what one of some outlines brings to each element to what the others do."""
     lay(problem, outlines, k, 0, 0, problem.load, problem.share)
+
+
+@compiled_as_is
+def add_outlines(problem: JointProblem, outlines: Outlines) -> None:
+    """Add what all of some outlines bring to each element to what the others do."""
+    for k in range(outlines.kinds.shape[0]):
+        lay(problem, outlines, k, 0, 0, problem.load, problem.share)
 
 
 @compiled_as_is
@@ -182,36 +190,30 @@ def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
     rows, cols = states.shape
     count = kinds.shape[0]
     expected, total = problem.load.copy(), problem.share.copy()
-    own = np.zeros((count, rows, cols))
-    rise = np.zeros((count * WIDTH, rows, cols))
-    at, size = np.empty(WIDTH), count * WIDTH
+    own, size = np.zeros((count, rows, cols)), count * WIDTH
+    rise = np.zeros((size, rows, cols))
     for x in range(size):
         out.slope[x] = 0.0
         for y in range(size):
             out.matrix[x, y] = 0.0
+    margin = foam_margin(grid, noise) + grid[2] * STEP
     for k in range(count):
         kind, n, first = kinds[k], corners[k], unknowns(kinds[k], corners[k])
         for m in range(first + 1, WIDTH):
             out.matrix[k * WIDTH + m, k * WIDTH + m] = 1.0
-        margin = foam_margin(grid, noise) + grid[2] * STEP
         box = window(kind, n, points[k], grid, rows, cols, margin)
         if box[2] <= 0 or box[3] <= 0:
             continue
-        steps, scale = steps_of(kind, n, points[k], grid), math.exp(points[k, first])
-        r, c = box[0], box[1]
-        for m in range(-1, first):  # at first where it lies: one call, which is compiled once
-            for x in range(WIDTH):
-                at[x] = points[k, x] + (steps[m] if x == m else 0.0)
-            here = shares_of(kind, n, at, grid, noise, box, rows, cols)
-            for i in range(box[2]):
-                for j in range(box[3]):
-                    if m >= 0:
-                        moved = here[i, j] - own[k, r + i, c + j]
-                        rise[k * WIDTH + m, r + i, c + j] = moved / steps[m]
-                        continue
-                    own[k, r + i, c + j] = here[i, j]
-                    expected[r + i, c + j] += scale * here[i, j]
-                    total[r + i, c + j] += here[i, j]
+        scale, r, c = math.exp(points[k, first]), box[0], box[1]
+        steep = np.zeros((first, box[2], box[3]))
+        here, _ = shares_with_slopes(kind, n, points[k], grid, noise, box, rows, cols, steep)
+        for i in range(box[2]):
+            for j in range(box[3]):
+                own[k, r + i, c + j] = here[i, j]
+                expected[r + i, c + j] += scale * here[i, j]
+                total[r + i, c + j] += here[i, j]
+                for m in range(first):
+                    rise[k * WIDTH + m, r + i, c + j] = steep[m, i, j]
     _sum_up(problem, outlines, Coverage(expected, total, own, rise), out)
 
 
@@ -225,16 +227,19 @@ def _sum_up(
     logs, states, noise = problem.logs, problem.states, problem.noise
     slope, matrix = out
     rows, cols = states.shape
-    scatter, size = scatter_of(noise), slope.shape[0]
+    scatter, size, count = scatter_of(noise), slope.shape[0], kinds.shape[0]
     along, tight, used = np.zeros(size), np.zeros(size), np.empty(size, np.int64)
+    firsts, scales = np.empty(count, np.int64), np.empty(count)
+    for k in range(count):
+        firsts[k] = unknowns(kinds[k], corners[k])
+        scales[k] = math.exp(points[k, firsts[k]])
     for i in range(rows):
         for j in range(cols):
             n = 0
-            for k in range(kinds.shape[0]):
+            for k in range(count):
                 if own[k, i, j] <= 0.0:
                     continue
-                first = unknowns(kinds[k], corners[k])
-                scale = math.exp(points[k, first])
+                first, scale = firsts[k], scales[k]
                 floor = max(expected[i, j], SLIVER * scale)
                 for m in range(first):
                     at = k * WIDTH + m
@@ -261,7 +266,5 @@ def _sum_up(
                     slope[x] -= excess * tight[a_]
                 for b_ in range(a_ + 1):
                     y = used[b_]
-                    both = weight * along[a_] * along[b_] + push * tight[a_] * tight[b_]
-                    matrix[x, y] += both
-                    if x != y:
-                        matrix[y, x] += both
+                    matrix[x, y] += weight * along[a_] * along[b_] + push * tight[a_] * tight[b_]
+    mirror(matrix)

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtr
 
+from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.alike import alikeness
@@ -23,7 +23,15 @@ from tactile_graph_likelihood.several.partings import across, partings, sketch_o
 from tactile_graph_likelihood.several.scene import Scene
 from tactile_graph_likelihood.several.seeds import seeds
 from tactile_graph_likelihood.several.sketch import STAGES, lay_sketches, settle_sketches
-from tactile_graph_likelihood.single.element_terms import LEAST, SIGMA, UNKNOWN, VOIDS, on_level
+from tactile_graph_likelihood.single.element_terms import (
+    LEAST,
+    ON,
+    SIGMA,
+    SQRT_HALF,
+    UNKNOWN,
+    VOIDS,
+    on_level,
+)
 from tactile_graph_likelihood.single.problem import Places
 
 Mask = NDArray[np.bool_]
@@ -172,12 +180,8 @@ class Ladder(Scene):
 
     def beside_sketches(self, points: Values, *left_out: int) -> tuple[JointProblem, Values]:
         """Return the problem beside all sketches but for some, and those that it is beside."""
-        rest = np.delete(points, left_out, axis=0)
-        beside = self.problem._replace(
-            load=self.problem.load.copy(), share=self.problem.share.copy()
-        )
-        lay_sketches.call(beside, rest)
-        return beside, rest
+        rest = points[[k for k in range(len(points)) if k not in left_out]]
+        return laid_on(self.problem, rest), rest
 
     def shares(self, points: Values) -> tuple[Places, Values]:
         """Return which sketch each touched element lies in, or nearest to, and what is unexplained.
@@ -219,21 +223,43 @@ class Ladder(Scene):
 
     def surplus(self, load: Values) -> float:
         """Return how much more is left unexplained than were the model true, in nats."""
-        noise = self.problem.noise
-        mu = np.log(np.maximum(load, 1e-9))
-        shows = (1.0 - noise[VOIDS]) * ndtr((mu - noise[LEAST]) / noise[SIGMA])
-        usual = shows * USUAL - (1.0 - shows) * np.log1p(-shows)
-        return float(self.unexplained(load).sum() - usual[self.problem.states != UNKNOWN].sum())
+        return float(unexplained_by.call(self.problem, load, True).sum())
 
     def unexplained(self, load: Values) -> Values:
         """Return how much likelier each element's reading would be, were it explained wholly."""
-        noise, logs = self.problem.noise, self.problem.logs
-        mu = np.log(np.maximum(load, 1e-9))
-        half = 0.5 * ((logs - mu) / noise[SIGMA]) ** 2
-        odd = np.where(half > ODD, np.minimum(half, on_level.call(noise)), 0.0)
-        none = -np.log1p(-(1.0 - noise[VOIDS]) * ndtr((mu - noise[LEAST]) / noise[SIGMA]))
-        left: Values = np.where(self.on, odd, none)
-        return np.where(self.problem.states == UNKNOWN, 0.0, left)
+        return unexplained_by.call(self.problem, load, False)
+
+
+@compiled_as_is
+def unexplained_by(problem: JointProblem, load: Values, less_usual: bool) -> Values:
+    """Return what a load leaves unexplained of each reading, in nats, shape (rows, columns).
+
+    Less what a load that is true would leave in the mean, where that is asked for.
+    """
+    states, noise = problem.states, problem.noise
+    most, found = on_level(noise), np.zeros(load.shape)
+    for i in range(load.shape[0]):
+        for j in range(load.shape[1]):
+            if states[i, j] == UNKNOWN:
+                continue
+            mu = math.log(max(load[i, j], 1e-9))
+            z = (mu - noise[LEAST]) / noise[SIGMA]
+            shows = (1.0 - noise[VOIDS]) * 0.5 * math.erfc(-SQRT_HALF * z)
+            if states[i, j] == ON:
+                half = 0.5 * ((problem.logs[i, j] - mu) / noise[SIGMA]) ** 2
+                found[i, j] = min(half, most) if half > ODD else 0.0
+            else:
+                found[i, j] = -math.log1p(-shows)
+            if less_usual:
+                found[i, j] -= shows * USUAL - (1.0 - shows) * math.log1p(-shows)
+    return found
+
+
+def laid_on(problem: JointProblem, points: Values) -> JointProblem:
+    """Return a problem beside sketches."""
+    beside = problem._replace(load=problem.load.copy(), share=problem.share.copy())
+    lay_sketches.call(beside, points)
+    return beside
 
 
 Pair = tuple[tuple[int, int], Mask, float]

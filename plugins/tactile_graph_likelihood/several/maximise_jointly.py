@@ -29,8 +29,6 @@ HALVINGS = 6
 LOOSE, GAP = 0.01, 6.0
 """Information, per squared pitch, that is added to each number's own: to keep steps finite;
 for the evidence, since an edge that lies in a gap may slide, but no farther than the gap."""
-POSTERIOR = -1
-"""Rounds of a climb that is none: only the log posterior is asked for."""
 HALF_LN_TWO_PI = 0.5 * math.log(2.0 * math.pi)
 
 
@@ -128,6 +126,24 @@ def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enoug
 
 
 @compiled_as_is
+def likeliest_of(problem: JointProblem, kind: int, corners: int, points: Values) -> int:
+    """Return which of some outlines of a kind, each by itself, has the highest log posterior.
+
+    ``points`` has shape (N, 6); the first of those that are equal.
+    """
+    best, most = 0, -math.inf
+    kinds, edges = np.full(1, kind, np.int64), np.full(1, corners, np.int64)
+    for n in range(points.shape[0]):
+        one = Outlines(kinds, edges, points[n : n + 1])
+        now = log_rest_of(problem, one)
+        if now > -math.inf:
+            now += gain(problem, one)
+        if now > most:
+            best, most = n, now
+    return best
+
+
+@compiled_as_is
 def softened(problem: JointProblem) -> JointProblem:
     """Return a problem whose elements feel a little beyond their edge, and that knows no strays."""
     soft, strict = soft_and_strict(problem.grid, problem.noise)
@@ -175,16 +191,13 @@ def settle(
 ) -> float:
     """Bring outlines to their joint mode, in ``most`` rounds, and return the log evidence there.
 
-    With no rounds they stay where they are; with `POSTERIOR` as ``most`` it is the log posterior
-    that is returned. At first the problem is `softened`, for ``soft`` rounds. The information is
-    written to ``matrix``.
+    With no rounds they stay where they are. At first the problem is `softened`, for ``soft``
+    rounds. The information is written to ``matrix``.
     """
     now, stages = -math.inf, (softened(problem), problem)
     for stage in range(0 if soft > 0 else 1, 2):  # one call, which is compiled once
         rounds, least = (soft, 0.5) if stage == 0 else (most, enough)
         now = maximise_jointly(stages[stage], outlines, rounds, least)
-    if most == POSTERIOR:
-        return now
     return laplace_evidence(problem, outlines, now, matrix)
 
 

@@ -17,7 +17,7 @@ from tactile_graph_likelihood.several.joint_posterior import (
     MIDDLE,
     WIDTH,
     JointProblem,
-    add_outline,
+    add_outlines,
 )
 from tactile_graph_likelihood.several.ladder import LEAST_PIECE
 from tactile_graph_likelihood.several.scene import Configuration, joined
@@ -148,8 +148,7 @@ class OnPad:
 def laid(problem: JointProblem, found: Configuration) -> JointProblem:
     """Return a problem beside outlines."""
     its = problem._replace(load=problem.load.copy(), share=problem.share.copy())
-    for k in range(found.count):
-        add_outline.call(its, found.outlines, k)
+    add_outlines.call(its, found.outlines)
     return its
 
 

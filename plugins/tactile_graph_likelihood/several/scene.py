@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -20,9 +20,9 @@ from tactile_graph_likelihood.several.joint_posterior import (
     WIDTH,
     JointProblem,
     Outlines,
-    add_outline,
+    add_outlines,
 )
-from tactile_graph_likelihood.several.maximise_jointly import POSTERIOR, settle
+from tactile_graph_likelihood.several.maximise_jointly import likeliest_of, settle
 from tactile_graph_likelihood.several.sample_beside import sample_beside
 from tactile_graph_likelihood.single.element_terms import ON
 from tactile_graph_likelihood.single.even_points import even_points
@@ -77,8 +77,9 @@ class Configuration:
         keep = [k for k in range(self.count) if k not in left_out]
         return Configuration(self.kinds[keep], self.corners[keep], self.points[keep], 0.0)
 
+    @cached_property
     def log_sizes_and_loads(self) -> tuple[Values, Values]:
-        """Return the logarithms of the roots of areas, and of loads."""
+        """Logarithms of the roots of areas, and of loads."""
         sizes = [0.5 * math.log(area_of(self, k)) for k in range(self.count)]
         at = [unknowns.call(int(k), int(n)) for k, n in zip(self.kinds, self.corners, strict=True)]
         return np.array(sizes), self.points[np.arange(self.count), at]
@@ -127,9 +128,7 @@ class Scene:
         """Return the problem beside all outlines, but for some, and beside what already lies."""
         before = before or self.problem
         problem = before._replace(load=before.load.copy(), share=before.share.copy())
-        for k in range(found.count):
-            if k not in left_out:
-                add_outline.call(problem, found.outlines, k)
+        add_outlines.call(problem, found.without(*left_out).outlines)
         return problem
 
     def settled(
@@ -164,13 +163,12 @@ class Scene:
             around = np.zeros((tries, WIDTH))
             around[:, :n] = AROUND[:n] * _table(n)[:tries]
             starts += [start + off for start in starts[:1] for off in around]
-        begun = [
-            Configuration(np.array([kind[0]]), np.array([kind[1]]), start[None], 0.0)
-            for start in starts
-        ]
-        if len(begun) > 1:
-            begun.sort(key=lambda it: -self.settled(it, beside, POSTERIOR)[0].log_evidence)
-        return self.settled(begun[0], beside, ROUNDS, soft)[0]
+        first = 0
+        if len(starts) > 1:
+            first = likeliest_of.call(beside, *kind, np.array(starts))
+        kinds, corners = np.array([kind[0]]), np.array([kind[1]])
+        begun = Configuration(kinds, corners, starts[first][None], 0.0)
+        return self.settled(begun, beside, ROUNDS, soft)[0]
 
     def worth(self, found: Configuration) -> float:
         """Return what outlines add to the log probability of a scene."""

@@ -19,6 +19,7 @@ from tactile_graph_likelihood.several.ladder import (
     Mask,
     Sketches,
     dilated,
+    laid_on,
     neighbours,
 )
 from tactile_graph_likelihood.several.scene import ROUNDS, Configuration, joined, like
@@ -31,6 +32,10 @@ Place = tuple[tuple[int, ...], Mask, float]
 PAIRS, SOFT = 3, 4
 """Pairs of sketches of a piece that are looked at, and rounds of the soft search for the first kind
 that is drawn of each."""
+
+PARTED, THREES, THREE = 2, 2, 15.0
+"""Pairs of sketches of two outlines' elements of which either half is parted again, triples that
+are drawn at most, and how much less log probability these may have than what they replace."""
 
 TRIES = 24
 """Other starts of an outline that is drawn by itself."""
@@ -127,7 +132,7 @@ class Search(Ladder):
 
     def of_number(self, found: Configuration) -> float:
         """Return the log probability of outlines that are all of a part's, in one order."""
-        return self.worth(found) + alikeness(*found.log_sizes_and_loads(), self.problem.prior)
+        return self.worth(found) + alikeness(*found.log_sizes_and_loads, self.problem.prior)
 
     def noted(self, found: Configuration) -> Configuration:
         """Return outlines brought to their joint mode; they are kept if their number's best."""
@@ -148,8 +153,8 @@ class Search(Ladder):
         for out, mask, left in self.places(found, room):
             beside, rest = self.beside(found, *out), found.without(*out)
             now = self.settled(joined([found.only(k) for k in out]), beside, 0)[0]
-            before = self.worth(now)
-            for new in self.instead(out, mask, beside, (before, left)):
+            place, before = (out, mask, left), self.worth(now)
+            for new in self.instead(place, beside, before, found.count < room):
                 log = found.log_evidence + new.log_evidence - now.log_evidence
                 made = replace(joined([rest, new]), log_evidence=log)
                 self.weighed(made.count, self.of_number(made))
@@ -178,10 +183,13 @@ class Search(Ladder):
                 yield out, mask, unsaid
 
     def instead(
-        self, out: tuple[int, ...], mask: Mask, beside: JointProblem, left: tuple[float, float]
+        self, place: Place, beside: JointProblem, before: float, more: bool
     ) -> Iterator[Configuration]:
-        """Yield what may explain a mask beside others: one outline, or two."""
-        before, unexplained = left
+        """Yield what may explain a place beside others: one outline, two, or three for two.
+
+        ``before`` is what lies there worth, and ``more`` whether there may be more outlines.
+        """
+        out, mask, unexplained = place
         if len(out) > 1:
             one = self.sketch_of(mask)
             if self.sketched(one, beside) > before - CHANGED:
@@ -193,6 +201,28 @@ class Search(Ladder):
         for worth, pair in pairs:
             if worth > max(least, pairs[0][0] - WORSE):
                 yield self.drawn(pair, beside, before)
+        if len(out) > 1 and more:
+            for worth, three in self.threes([pair for _, pair in pairs[:PARTED]], mask, beside):
+                if worth > before - THREE:
+                    yield self.drawn(three, beside, before)
+
+    def threes(
+        self, pairs: list[Values], mask: Mask, beside: JointProblem
+    ) -> list[tuple[float, Values]]:
+        """Return triples of sketches for a mask, of pairs one of which is parted, the best first.
+
+        Two outlines that cover three objects explain them half each: parting either gains nothing.
+        """
+        found = list[tuple[float, Values]]()
+        for pair in pairs:
+            own = self.shares(pair)[0]
+            for k in range(2):
+                other = pair[1 - k : 2 - k]
+                beside_it = laid_on(beside, other)
+                for _, two in self.parted(mask & (own == k), beside_it, 1):
+                    three = np.concatenate([two, other])
+                    found.append((self.sketched(three, beside, SKETCHED - 1), three))
+        return sorted(found, key=lambda it: -it[0])[:THREES]
 
     def drawn(
         self, points: Values, beside: JointProblem, worth: float = -math.inf

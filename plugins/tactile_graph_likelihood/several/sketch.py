@@ -96,11 +96,15 @@ class Slopes(NamedTuple):
 
 @compiled_as_is
 def frame_of(p: Values, out: Values) -> None:
-    """Write what `cover` takes of a sketch: centre, axes over their lengths, both lengths."""
+    """Write what `cover` takes of a sketch: centre, axes over their lengths, both lengths.
+
+    Last comes what no slope of the distance from the centre exceeds.
+    """
     cos, sin = math.cos(p[4]), math.sin(p[4])
     a, b = math.exp(p[2]), math.exp(p[3])
     out[0], out[1], out[2], out[3] = p[0], p[1], cos / a, sin / a
     out[4], out[5], out[6] = cos / b, sin / b, b / a
+    out[7] = math.sqrt(1.0 / (a * a) + 1.0 / (b * b))
 
 
 @compiled_as_is
@@ -116,6 +120,9 @@ def cover(frame: Values, x_cm: float, y_cm: float, half: float, rise: Values) ->
     r4 = s3 * s + t3 * t
     if r4 < 0.02:
         return 1.0
+    far = 1.0 + half * frame[7]
+    if r4 > far * far * far * far:
+        return 0.0
     r = math.sqrt(math.sqrt(r4))
     cube = r4 / r
     s3, t3 = s3 / cube, t3 / cube
@@ -194,7 +201,7 @@ def log_posterior(problem: JointProblem, points: Values, half: float, out: Infor
     grid, noise, states, count = problem.grid, problem.noise, problem.states, points.shape[0]
     total, level = log_prior(problem, points, out), on_level(noise)
     box = windows(grid, points, half, states.shape)
-    frame, scale = np.empty((count, 7)), np.empty(count)
+    frame, scale = np.empty((count, 8)), np.empty(count)
     own, rise, size = np.empty(count), np.zeros((count, 5)), count * WIDTH
     brought = Brought(own, rise, scale)
     work = Slopes(np.empty(size), np.empty(size), np.empty(size, np.int64))
@@ -368,7 +375,7 @@ def settle_sketches(problem: JointProblem, points: Values, first: int, last: int
 def lay_sketches(problem: JointProblem, points: Values) -> None:
     """Add what sketches bring to each element to what lies there."""
     grid = problem.grid
-    half, rise, frame = SHARP * grid[3], np.empty(5), np.empty(7)
+    half, rise, frame = SHARP * grid[3], np.empty(5), np.empty(8)
     for k in range(points.shape[0]):
         frame_of(points[k], frame)
         for i in range(problem.load.shape[0]):

@@ -202,24 +202,7 @@ def _rises(
     kind, corners, grid, estimated = problem.kind, problem.corners, problem.grid, problem.estimated
     first, (rows, columns) = unknowns(kind, corners), problem.states.shape
     rise = np.zeros((moving, box[2], box[3]))
-    if has_slopes(kind):
-        share = covered_with_slopes(kind, p, grid, box, rise)
-        bare = share.copy()
-        if not is_even(noise):
-            _press_with_slopes(problem, p, noise, box, share, rise)
-        if noise[FOAM] > 0.0:
-            share = blurred(share, noise[FOAM], box, rows, columns)
-            for k in range(first):
-                rise[k] = passed_on(rise[k], noise[FOAM], box, rows, columns)
-    else:
-        bare = covered(kind, corners, p, grid, box)
-        share = weighed(kind, corners, p, grid, noise, box, rows, columns, bare.copy())
-        steps, at = steps_of(kind, corners, p, grid), p.copy()
-        for k in range(first):
-            at[k] += steps[k]
-            moved = shares_of(kind, corners, at, grid, noise, box, rows, columns)
-            at[k] = p[k]
-            rise[k] = (moved - share) / steps[k]
+    share, bare = shares_with_slopes(kind, corners, p, grid, noise, box, rows, columns, rise)
     for k in range(estimated.shape[0]):
         place = estimated[k]
         if place < FOAM or place == CONTRAST:
@@ -232,13 +215,45 @@ def _rises(
 
 
 @compiled_as_is
+def shares_with_slopes(
+    kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, rows: int,
+    columns: int, rise: Values,
+) -> tuple[Values, Values]:  # fmt: skip
+    """Return `load_shares.shares_of` and bare coverage; write slopes along an outline's numbers.
+
+    Exact where coverage has exact ones and but for the pressure, else differenced. ``rise`` is
+    zeros, shape (N, rows, cols) of the box.
+    """
+    first = unknowns(kind, corners)
+    if has_slopes(kind):
+        share = covered_with_slopes(kind, p, grid, box, rise)
+        bare = share.copy()
+        if not is_even(noise):
+            _press_with_slopes(kind, corners, p, grid, noise, box, share, rise)
+        if noise[FOAM] > 0.0:
+            share = blurred(share, noise[FOAM], box, rows, columns)
+            for k in range(first):
+                rise[k] = passed_on(rise[k], noise[FOAM], box, rows, columns)
+        return share, bare
+    bare = covered(kind, corners, p, grid, box)
+    share = weighed(kind, corners, p, grid, noise, box, rows, columns, bare.copy())
+    steps, at = steps_of(kind, corners, p, grid), p.copy()
+    for k in range(first):
+        at[k] += steps[k]
+        moved = shares_of(kind, corners, at, grid, noise, box, rows, columns)
+        at[k] = p[k]
+        rise[k] = (moved - share) / steps[k]
+    return share, bare
+
+
+@compiled_as_is
 def _press_with_slopes(
-    problem: Problem, p: Values, noise: Values, box: Box, share: Values, rise: Values
-) -> None:
+    kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, share: Values,
+    rise: Values,
+) -> None:  # fmt: skip
     """Weigh coverage and its slopes, in place, by the pressure, whose own slope is differenced."""
-    kind, corners, grid, at = problem.kind, problem.corners, problem.grid, p.copy()
     steps, touched = steps_of(kind, corners, p, grid), np.where(share > 0.0, 1.0, 0.0)
-    pressure = touched.copy()
+    pressure, at = touched.copy(), p.copy()
     press(kind, corners, p, grid, noise, box, pressure)
     for k in range(unknowns(kind, corners)):
         at[k] += steps[k]
@@ -269,8 +284,8 @@ def information(problem: Problem, p: Values, out: Information) -> float:
     -----
     With mu the logarithm of an element's expected load, a touched one adds its chance of being
     no stray over sigma**2 times the outer product of the slopes of mu, an untouched one its
-    squared score: positive whatever was read. Coverage of a disc, rectangle or oval has its exact
-    slope, that of others is differenced over 0.02 of a pitch, as is the pressure.
+    squared score: positive whatever was read. Coverage of round outlines and rectangles has
+    its exact slope, that of others is differenced over 0.02 of a pitch, as is the pressure.
     """
     kind, grid, states, logs = problem.kind, problem.grid, problem.states, problem.logs
     first, noise = unknowns(kind, problem.corners), noise_at(problem, p)

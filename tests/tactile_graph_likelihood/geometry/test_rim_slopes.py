@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tactile_graph_likelihood.geometry.covered import covered, window
-from tactile_graph_likelihood.geometry.outlines import DISC, OVAL, RECTANGLE
+from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, OVAL, RECTANGLE
 from tactile_graph_likelihood.geometry.rim_slopes import covered_with_slopes
 
 PITCH_CM, ELEMENT_CM = 1.3, 1.0
@@ -30,12 +30,12 @@ def found_and_differenced(kind, p, soft, step=1e-6):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("soft", [0.0, 0.05])
-@pytest.mark.parametrize("kind", [DISC, RECTANGLE, OVAL])
+@pytest.mark.parametrize("kind", [DISC, RECTANGLE, OVAL, ELLIPSE])
 def test_slopes_are_those_of_differences(kind, soft):
     rng = np.random.default_rng(5)
     for _ in range(30):
         p = [*rng.uniform(4.0, 15.0, 2), rng.uniform(0.7, 6.0)]
-        if kind == RECTANGLE:
+        if kind in (RECTANGLE, ELLIPSE):
             p += [rng.uniform(0.7, 6.0), rng.uniform(-2.0, 2.0)]
         if kind == OVAL:
             p += [*(0.6 * p[2] * rng.uniform(-1.0, 1.0, 2))]

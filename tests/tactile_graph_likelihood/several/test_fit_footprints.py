@@ -89,8 +89,9 @@ def test_the_answer_is_the_same_each_time_and_tells_its_uncertainty():
     assert one.log_evidence == other.log_evidence
     for a, b in zip(one.shapes, other.shapes, strict=True):
         assert (a.posterior.mean == b.posterior.mean).all()
-        assert 0.01 < a.centre_std_cm < 0.6
+        assert 0.01 < a.centre_std_cm < 1.0  # the rectangle may be two
         assert np.linalg.eigvalsh(a.posterior.covariance).min() > 0.0
+    assert sorted(shape.centre_std_cm for shape in one.shapes)[1] < 0.2
 
 
 def test_a_touching_neighbour_adds_to_the_uncertainty():
@@ -102,7 +103,7 @@ def test_a_touching_neighbour_adds_to_the_uncertainty():
             found = FIT(image_of(shapes, seed), shapes)
             if found.count == 2:
                 some.append(min(found.shapes, key=lambda s: s.x_cm).centre_std_cm)
-        stds.append(np.mean(some))
+        stds.append(np.median(some))
     assert stds[0] > stds[1]
 
 

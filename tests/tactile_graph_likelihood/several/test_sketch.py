@@ -23,7 +23,7 @@ POINT = np.array([8.0, 9.0, math.log(3.0), math.log(2.0), 0.4, 4.5])
 
 
 def covered(point, x_cm, y_cm, half=1.5):
-    frame, rise = np.empty(7), np.zeros(5)
+    frame, rise = np.empty(8), np.zeros(5)
     frame_of.call(point, frame)
     return cover.call(frame, x_cm, y_cm, half, rise), rise
 
