@@ -64,7 +64,7 @@ FAINT = Pattern(1.0, 0.4, 2.5)
 NEGLIGIBLE = 0.03
 """Probability over the likeliest pressure's below which one is left out."""
 
-PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 1.6}
+PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 1.9}
 """Share that is added to the variance where a pressure of one or two numbers explains the load: no
 face presses quite like that, and foam shares gains that the fit takes for the outline's."""
 
@@ -72,7 +72,7 @@ UNSURER = 1.3
 """Times the variance of a normal distribution around an outline with an angle that a sample of it
 would come to, for a quick answer: between two rows of elements nothing holds its sides."""
 
-UNSUREST = 2.0
+UNSUREST = 2.3
 """The same of a rectangle under a pressure, which has nine unknowns, for any other answer."""
 
 SHARPER = 0.6

@@ -24,8 +24,8 @@ readings count as none of the model's: above it they are those of good answers b
 HIDDEN = 0.25
 """Of a pitch: by how much foam, or a face that falls to its rim, moves an edge unseen."""
 
-EVENLY = 2.0
-"""Independent points that one of a disc's or a rectangle's evenly spread points is worth; of a
+DISC_EVENLY, EVENLY = 4.0, 2.0
+"""Independent points that one of a disc's evenly spread points is worth, and of a rectangle's; of a
 rectangle that reaches beyond the pad's edge, and of other outlines, one."""
 
 
@@ -99,7 +99,7 @@ def on_any_pad(
         covariance, lengths = values["covariance"].copy(), 2 + sizes.call(found.kind)
         covariance.flat[: lengths * (len(covariance) + 1) : len(covariance) + 1] += hidden_cm2
         values["covariance"] = covariance
-    values["evenly"] = EVENLY if found.kind == DISC else 1.0
+    values["evenly"] = DISC_EVENLY if found.kind == DISC else 1.0
     its = object.__new__(AnyPadPosterior)
     vars(its).update(values)  # a frozen dataclass sets its fields one by one, by a call each
     return its
