@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image, Shape
+from tactile_graph_likelihood.geometry.outline_prior import LARGEST, SMALLEST
 from tactile_graph_likelihood.geometry.outlines import (
     ELLIPSE,
     FREE,
@@ -281,16 +282,14 @@ class Model:
         if readings.least_log is not None:
             noise = noise.copy()
             noise[LEAST] = readings.least_log
-        kind, n = self.kind, unknowns.call(self.kind, self.corners)
-        if kind == ELLIPSE and belief is None:
-            kind = OVAL
-        mean, precision = (np.zeros(n), np.zeros((n, n))) if belief is None else belief
+        kind = OVAL if self.kind == ELLIPSE and belief is None else self.kind
+        mean, precision = belief or _no_belief(_unknowns(self.kind, self.corners))
         states = readings.states
         if states.size > LARGE_PAD:
             noise, states = _quiet(readings, noise)
         return Problem(
             kind, self.corners, readings.grid, readings.logs, states, noise, places, guess,
-            self.prior_vector(readings), mean, precision,
+            self._prior(readings), mean, precision,
         )  # fmt: skip
 
     def _posterior_of(self, kind: int, sample: Sample) -> Posterior:
@@ -304,17 +303,17 @@ class Model:
 
     def range_cm(self, readings: Readings) -> tuple[float, float]:
         """Return the smallest and the largest radius, half axis or half side."""
-        smallest = self.smallest_cm or SMALLEST_PITCHES * float(readings.grid[2])
-        if math.isfinite(self.largest_cm):
-            return smallest, self.largest_cm
-        return smallest, max(math.hypot(*readings.size_cm), 2.0 * smallest)
+        smallest, largest = self._prior(readings)[SMALLEST : LARGEST + 1].tolist()
+        return smallest, largest
 
     def prior_vector(self, readings: Readings) -> Values:
         """Return the prior as the kernels take it, see `outline_prior`."""
-        left, top, *_ = readings.grid.tolist()
-        width, height = readings.size_cm
-        smallest, largest = self.range_cm(readings)
-        return np.array([left, top, width, height, smallest, largest, self.whole, math.nan, 0.0])
+        return self._prior(readings).copy()
+
+    def _prior(self, readings: Readings) -> Values:
+        """Return the same, which is everybody's."""
+        place = readings.grid.tobytes(), readings.states.shape
+        return _prior_of(place, self.smallest_cm, self.largest_cm, self.whole)
 
     def _noise_at(self, pitch_cm: float) -> NoiseTaken:
         kept = self._kept.get(pitch_cm)
@@ -327,7 +326,7 @@ class Model:
         return {}
 
     def _table(self, problem: Problem) -> Values:
-        return self.table_of(unknowns.call(self.kind, self.corners) + 1 + len(problem.estimated))
+        return self.table_of(_unknowns(self.kind, self.corners) + 1 + len(problem.estimated))
 
     def table_of(self, n: int) -> Values:
         """Return evenly spread points of Student's t, shape (N, n), in whole blocks."""
@@ -380,6 +379,31 @@ def _as_ellipses(top: Values, points: Values, weights: Values) -> tuple[Values, 
     if quarters % 2:
         top[[2, 3]] = top[[3, 2]]
     return top, mean, covariance
+
+
+@lru_cache(256)
+def _prior_of(
+    place: tuple[bytes, tuple[int, ...]], smallest_cm: float, largest_cm: float, whole: float
+) -> Values:
+    """Return a prior vector on elements of a grid, as bytes, of so many rows and columns."""
+    grid, (rows, columns) = np.frombuffer(place[0]), place[1]
+    left, top, pitch, side = grid[:4].tolist()
+    width, height = columns * pitch - (pitch - side), rows * pitch - (pitch - side)
+    smallest = smallest_cm or SMALLEST_PITCHES * pitch
+    largest = largest_cm
+    if not math.isfinite(largest):
+        largest = max(math.hypot(width, height), 2.0 * smallest)
+    return np.array([left, top, width, height, smallest, largest, whole, math.nan, 0.0])
+
+
+@cache
+def _no_belief(n: int) -> tuple[Values, Values]:
+    return np.zeros(n), np.zeros((n, n))
+
+
+@cache
+def _unknowns(kind: int, corners: int) -> int:
+    return int(unknowns.call(kind, corners))
 
 
 @cache
