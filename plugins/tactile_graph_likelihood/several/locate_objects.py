@@ -92,7 +92,7 @@ class LocateObjects:
         ] = SEVERAL,
     ) -> None:
         self._pad, self._gap_cm, self._told = settings.known_pad, settings.gap_cm, settings.noise
-        self._expected = settings.expected(kinds, most, more)
+        self.expected = settings.expected(kinds, most, more)
 
     def __call__(self, image: Image) -> Footprints:
         """Return the outlines.
@@ -110,15 +110,12 @@ class LocateObjects:
             If nothing rises above the noise, or no such outlines explain what does.
         """
         readings = observed(image, self._pad, self._gap_cm)
+        problem, found = self.searched(readings)
         pitch = float(readings.grid[2])
-        told, least_log = self._told, uniform(readings).least_log
-        if least_log is not None:
-            told = replace(told, least=math.exp(least_log))
-        problem, found = self._found(readings, told)
         parts, fit = posteriors(problem, found)
         alike = unbiased(fit.neighbours, readings.touched, len(parts))
         wide = FEW_ELEMENTS * variance_inflation(alike, readings.touched)
-        uneven = math.sqrt(FEW_ELEMENTS) * told.sigma * pitch**1.5
+        uneven = math.sqrt(FEW_ELEMENTS) * self._told.sigma * pitch**1.5
         shapes = [
             stretched(on_any_pad(part, part.log_evidence, wide, uneven), readings) for part in parts
         ]
@@ -133,15 +130,24 @@ class LocateObjects:
             and float(np.mean([shape.centre_std_cm for shape in shapes])) < VAGUE * pitch,
         )
 
-    def _found(self, readings: Readings, told: Noise) -> tuple[JointProblem, OnPad]:
-        """Return the likeliest outlines, under the noise that they leave."""
+    def searched(self, readings: Readings) -> tuple[JointProblem, OnPad]:
+        """Return the likeliest outlines, under the noise that they leave.
+
+        Raises
+        ------
+        Degenerate
+            If nothing rises above the noise, or no such outlines explain what does.
+        """
         pitch = float(readings.grid[2])
-        problem = self._expected.problem(readings, told.vector(pitch))
-        found = likeliest(problem, self._expected)
+        told, least_log = self._told, uniform(readings).least_log
+        if least_log is not None:
+            told = replace(told, least=math.exp(least_log))
+        problem = self.expected.problem(readings, told.vector(pitch))
+        found = likeliest(problem, self.expected)
         noise, shared = said_by(problem, found, told)
         problem = problem._replace(noise=noise.vector(pitch))
         if is_other(told, noise, shared):
-            found = likeliest(problem, self._expected, shared, found.outlines, anew=False)
+            found = likeliest(problem, self.expected, shared, found.outlines, anew=False)
         return problem, found.under(problem.noise, shared)
 
 
