@@ -8,12 +8,14 @@ import sys
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import chdir, contextmanager
+from multiprocessing import get_all_start_methods
 from pathlib import Path
 from typing import Any
 
 from click.testing import CliRunner
 
 from tactile_graph.cli import cli
+from tactile_graph.forkserver import begin_forkserver
 from tactile_graph.many.executor_kind import ExecutorKind, Opened, Place
 from tactile_graph.plugins.registry import installed
 
@@ -104,6 +106,8 @@ def ran(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
 @contextmanager
 def installed_here(folder: Path) -> Iterator[None]:
     """Have the plugin of a folder installed in this process, and in workers that it starts."""
+    if "forkserver" in get_all_start_methods():
+        begin_forkserver(["zarr"])  # once, as a command line that names a store does
     sys.path.insert(0, str(folder))
     installed.cache_clear()
     try:
