@@ -109,7 +109,7 @@ BY_LOOPS = tuple(
         "docs", "tactile_graph/testing", "tactile_graph_classifiers",
         "tactile_graph_filters/morphology", "tactile_graph_filters/parting",
         "tactile_graph_fitters", "tactile_graph_hull", "tactile_graph_likelihood",
-        "tactile_graph_mrf/contours", "tactile_graph_mrf/descent",
+        "tactile_graph_mrf/contours", "tactile_graph_mrf/descent", "tactile_graph_mrf/energy",
         "tactile_graph_mrf/samplers/test_gibbs.py", "tactile_graph_pipelines",
         "tactile_graph_thesis/items/test_items.py", "tactile_graph_thesis/measure",
     )

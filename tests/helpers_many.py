@@ -5,11 +5,19 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future
+from contextlib import chdir, contextmanager
+from multiprocessing import get_all_start_methods
 from pathlib import Path
 from typing import Any
 
+from click.testing import CliRunner
+
+from tactile_graph.cli import cli
+from tactile_graph.forkserver import begin_forkserver
 from tactile_graph.many.executor_kind import ExecutorKind, Opened, Place
+from tactile_graph.plugins.registry import installed
 
 PLUGIN = '''
 import os
@@ -93,6 +101,31 @@ def ran(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
         command(*words), cwd=folder, env=surroundings(folder), capture_output=True, text=True,
         timeout=300, check=False,
     )  # fmt: skip
+
+
+@contextmanager
+def installed_here(folder: Path) -> Iterator[None]:
+    """Have the plugin of a folder installed in this process, and in workers that it starts."""
+    if "forkserver" in get_all_start_methods():
+        begin_forkserver(["zarr"])  # once, as a command line that names a store does
+    sys.path.insert(0, str(folder))
+    installed.cache_clear()
+    try:
+        yield
+    finally:
+        sys.path.remove(str(folder))
+        sys.modules.pop("deadly", None)
+        installed.cache_clear()
+
+
+def ran_here(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run the command line in a folder as `ran` does, but in this process: its workers alone start.
+
+    A process of its own takes longer to import than these runs take.
+    """
+    with installed_here(folder), chdir(folder):
+        got = CliRunner().invoke(cli, [*words])
+    return subprocess.CompletedProcess([*words], got.exit_code, got.stdout, got.stderr)
 
 
 class Here(Executor):

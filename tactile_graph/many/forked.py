@@ -19,6 +19,10 @@ WANTED = (
     "tactile_graph.engine.runner",
     "tactile_graph.engine.tables.table",
     "tactile_graph.compiled.machine_code",
+    "tactile_graph.compiled.whole",
+    "tactile_graph.engine.outcomes.promises",
+    "tactile_graph.steps.checks",
+    "tactile_graph_sources.recording",
     "tactile_graph.cli.output.writers",
 )
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import reduce
 from typing import Any, get_origin
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -30,6 +33,8 @@ from tactile_graph.wires import (
 DEEPEST = 3
 """How many steps may stand one before the other to make a value."""
 Maker = Callable[[Case], Any]
+_made: WeakKeyDictionary[Any, dict[tuple[Any, ...], bytes]] = WeakKeyDictionary()
+"""What steps made, packed, by what it was made of; several steps may take the same."""
 
 
 class Unmakeable(Exception):  # noqa: N818 -- what became of a value
@@ -151,19 +156,31 @@ def _path(given: Any, wanted: Any) -> tuple[str, ...] | None:
 def _through(
     signature: Signature, makers: Mapping[str, Maker], path: tuple[str, ...], quantity: str
 ) -> Maker:
+    """Return what has a step make values; of the same inputs once, copies of it from then on."""
     settings = signature.arguments(validate_settings(signature, {})[0])
+    target = signature.target
+    try:
+        known = _made.setdefault(target, {})
+    except TypeError:  # a callable that has no hash
+        known = {}
 
     def make(case: Case) -> Any:
         inputs = {name: maker(case) for name, maker in makers.items()}
+        key = (path, pickle.dumps((inputs, case.number)))
+        if key in known:
+            return pickle.loads(known[key])
         try:
             with np.errstate(all="ignore"):
                 if signature.kind is Kind.CLASS:
-                    value = signature.target(**settings)(**inputs)
+                    value = target(**settings)(**inputs)
                 else:
-                    value = signature.target(**inputs, **settings)
+                    value = target(**inputs, **settings)
         except Exception as error:
             raise Unmakeable(f"{signature.name} gives none: {error}", case=True) from None
-        return spoiled(reduce(getattr, path, value), case.number)
+        made = spoiled(reduce(getattr, path, value), case.number)
+        with suppress(Exception):  # what cannot be pickled is told when that step is tried
+            known[key] = pickle.dumps(made)
+        return made
 
     return make
 

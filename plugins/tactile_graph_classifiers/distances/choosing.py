@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from itertools import product
 from typing import NamedTuple
 
@@ -123,6 +124,25 @@ class Tried(NamedTuple):
         ]
         at = int(np.argmax(counts))
         return counts[at], BEYOND[at]
+
+
+def choose_once(examples: Examples) -> Choice:
+    """Return what `choose` does; of the same examples at once, as far as this process remembers.
+
+    A pipeline is loaded again whenever it is saved, and by each of many variants.
+
+    Parameters
+    ----------
+    examples : Examples
+    """
+    return _chosen(*[(part.dtype.str, part.shape, part.tobytes()) for part in examples])
+
+
+@lru_cache(maxsize=8)
+def _chosen(*parts: tuple[str, tuple[int, ...], bytes]) -> Choice:
+    return choose(
+        Examples(*[np.frombuffer(raw, dtype).reshape(shape) for dtype, shape, raw in parts])
+    )
 
 
 def choose(examples: Examples) -> Choice:

@@ -13,7 +13,7 @@ from annotated_types import Gt, Lt, MinLen
 
 from tactile_graph.errors import DataError
 from tactile_graph_classifiers.database.choice import CONFIDENCE
-from tactile_graph_classifiers.distances.choosing import Examples, choose, left_out_squares
+from tactile_graph_classifiers.distances.choosing import Examples, choose_once, left_out_squares
 from tactile_graph_classifiers.distances.classifier import Lookup
 from tactile_graph_classifiers.distances.discriminant_model import Learned
 from tactile_graph_classifiers.distances.identity import UNKNOWN, Identity
@@ -66,7 +66,7 @@ class CanonicalDiscriminant:
         self.takes, self.takes_by, self.takes_hint = self._lookup.taken
         known = self._lookup.known
         examples = Examples.of(known)
-        manner = (known.choice or choose(examples)).manner
+        manner = (known.choice or choose_once(examples)).manner
         self._learned = Learned.of(examples.readings, examples.labels, manner.shrinkage)
         self._discriminant = self._learned.discriminant(manner)
         self._examples, self._manner = examples, manner

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -78,27 +79,51 @@ def solve(fit: Fit, xy: NDArray[np.float64], starts: Sequence[Vector]) -> Solved
     starts : sequence of lists
         Shapes in cm, such as ``Fit.shape`` gives.
     """
-    from mpmath import mp, mpf
+    from mpmath import mp
 
+    points_cm = np.asarray(xy, dtype=np.float64).tobytes()
     with mp.workdps(DIGITS):
-        raw = [(mpf(float(x)), mpf(float(y))) for x, y in xy]
-        x0, y0 = (sum(p[k] for p in raw) / len(raw) for k in (0, 1))
-        unit = max(max(abs(x - x0), abs(y - y0)) for x, y in raw)
-        if not unit > 0:
+        framed = _points(points_cm)
+        if framed is None:
             return None
-        points = [((x - x0) / unit, (y - y0) / unit) for x, y in raw]
-        roots = []
-        for start in starts:
-            framed = _framed(fit, [mpf(v) for v in start], x0, y0, unit)
-            try:
-                a = _root(fit, points, fit.start(framed, points))
-            except (ZeroDivisionError, ValueError):
-                continue
-            if a is not None:
-                roots.append((fit.cost(a, points), a))
+        found = [_rooted(fit, points_cm, tuple(start)) for start in starts]
+        roots = [root for root in found if root is not None]
         if not roots:
             return None
+        points, x0, y0, unit = framed
         return _answer(fit, points, min(roots, key=lambda r: r[0])[1], x0, y0, unit)
+
+
+@lru_cache(maxsize=64)
+def _points(points_cm: bytes) -> tuple[Sequence[tuple[Any, Any]], Any, Any, Any] | None:
+    """Return points in their frame, its middle and its unit; None where all are in one place."""
+    from mpmath import mpf
+
+    raw = [(mpf(x), mpf(y)) for x, y in np.frombuffer(points_cm).reshape(-1, 2).tolist()]
+    x0, y0 = (sum(p[k] for p in raw) / len(raw) for k in (0, 1))
+    unit = max(max(abs(x - x0), abs(y - y0)) for x, y in raw)
+    if not unit > 0:
+        return None
+    return [((x - x0) / unit, (y - y0) / unit) for x, y in raw], x0, y0, unit
+
+
+@lru_cache(maxsize=1024)
+def _rooted(fit: Fit, points_cm: bytes, start: tuple[Any, ...]) -> tuple[Any, Vector] | None:
+    """Return a root and its cost, if a start leads to one.
+
+    It is remembered: of the same points several steps ask for the same fit.
+    """
+    from mpmath import mpf
+
+    framed = _points(points_cm)
+    assert framed is not None
+    points, x0, y0, unit = framed
+    shape = _framed(fit, [mpf(v) for v in start], x0, y0, unit)
+    try:
+        a = _root(fit, points, fit.start(shape, points))
+    except (ZeroDivisionError, ValueError):
+        return None
+    return None if a is None else (fit.cost(a, points), a)
 
 
 def _framed(fit: Fit, shape: Vector, x0: Any, y0: Any, unit: Any) -> Vector:

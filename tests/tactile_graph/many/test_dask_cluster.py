@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from helpers_many import ran, surroundings, write_plugin
+from helpers_many import ran, ran_here, surroundings, write_plugin
 from tactile_graph.errors import UsageError
 from tactile_graph.many.executor_kind import place_of
 
@@ -60,7 +60,7 @@ def ended(process: subprocess.Popen[str]) -> None:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("cluster")
     write_plugin(path)
-    got = ran(path, "convert", "a.zarr", "--source", "simulate", "--with", "frames=600")
+    got = ran_here(path, "convert", "a.zarr", "--source", "simulate", "--with", "frames=600")
     assert got.returncode == 0, got.stderr
     return path
 
@@ -79,7 +79,7 @@ def address(folder: Path) -> Iterator[str]:
 def both(folder: Path, address: str, *words: str) -> tuple[bytes, bytes, str]:
     """Return what one process writes and what the cluster does, and what was said of the latter."""
     for name, more in (("one.csv", ()), ("cluster.csv", ("--on", address))):
-        got = ran(folder, "run", *words, "-o", name, *more)
+        got = (ran if more else ran_here)(folder, "run", *words, "-o", name, *more)
         assert got.returncode == 0, got.stderr
     return (folder / "one.csv").read_bytes(), (folder / "cluster.csv").read_bytes(), got.stderr
 
@@ -123,8 +123,8 @@ def test_nobody_at_an_address_is_told(port: str) -> None:
 
 def test_a_comparison_on_a_cluster_is_that_of_one_process(folder: Path, address: str) -> None:
     for name, more in (("one.csv", ()), ("cluster.csv", ("--on", address))):
-        got = ran(folder, "compare", "circle-1", "circle-3", "a.zarr", "--frames", "120",
-                  "--csv", name, *more)  # fmt: skip
+        words = ("circle-1", "circle-3", "a.zarr", "--frames", "120", "--csv", name)
+        got = (ran if more else ran_here)(folder, "compare", *words, *more)
         assert got.returncode == 0, got.stderr
     assert (folder / "one.csv").read_bytes() == (folder / "cluster.csv").read_bytes()
     assert "several workers side by side" in " ".join((got.stdout + got.stderr).split())

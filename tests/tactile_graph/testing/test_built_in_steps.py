@@ -21,6 +21,7 @@ from tactile_graph_pads.learning.place import PlaceCorrection, write_place
 FAMILIES = sorted({p.name for p in installed().plugins if p.offers.get("steps")})
 FEW_LEVELS = {"model": {"n_levels": 6}}
 ROUGH = {"precision": 1.0, "pressure": "even"}
+COARSE = {"precision": 1.0}
 ONE_DISC = {"kinds": ["disc"], "most": 1}
 SETTINGS: dict[str, dict[str, Any]] = {
     # What has no default.
@@ -45,8 +46,10 @@ SETTINGS: dict[str, dict[str, Any]] = {
         ),
         ROUGH,
     ),
-    "footprint_by_order": {"precision": 1.0},
+    "footprint_by_order": COARSE,
     **dict.fromkeys(("fit_footprints", "locate_objects"), ONE_DISC),
+    **dict.fromkeys(("locate", "locate_disc", "locate_ellipse", "locate_rectangle"), COARSE),
+    "locate_contacts": {**COARSE, "shapes": ["disc", "ellipse"]},
 }
 QUICK = ("erode", "fit_circle", "hull", "contacts", "force", "tare")
 NEEDS_RELIEFS = ("nearest_relief",)

@@ -10,7 +10,7 @@ from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
 from tactile_graph_pads.pad import load_pad
 
-pytestmark = pytest.mark.usefixtures("warm_kernels")
+pytestmark = pytest.mark.usefixtures("plain_kernels")
 
 
 def contacts_of(frame):
@@ -28,7 +28,7 @@ def two_discs(seed=3):
     return frame
 
 
-@pytest.mark.slow  # three shapes are compiled
+@pytest.mark.slow  # three shapes are looked for
 def test_each_contact_has_its_outline_the_largest_first():
     frame = two_discs()
     step = LocateContacts(shapes=["disc"])

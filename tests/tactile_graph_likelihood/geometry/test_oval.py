@@ -82,7 +82,7 @@ def test_sizes_follow_the_pad_unless_given():
     )
 
 
-@pytest.mark.slow  # what searches a large pad is compiled for it
+@pytest.mark.usefixtures("plain_kernels")  # sooner than a search is compiled for a large pad
 def test_readings_far_away_do_not_lead_the_search_astray():
     rng, shape = np.random.default_rng(3), Circle(9.0, 9.0, 4.0)
     image = drawn(shape, 60.0, rng)

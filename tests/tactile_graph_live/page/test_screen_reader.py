@@ -6,8 +6,8 @@ import re
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import Any
+from contextlib import ExitStack, contextmanager
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -96,10 +96,68 @@ def opened(orca: Reader, double: Double) -> Iterator[tuple[Reader, Running, str]
     raise AssertionError(f"taken for one that loads, {LOADS} times: {said}")
 
 
+class Shown(NamedTuple):
+    """A page that was read to its end.
+
+    Parameters
+    ----------
+    reader : Reader
+    double : Double
+        Whose page it is.
+    running : Running
+    text : str
+        What was said as it was opened.
+    """
+
+    reader: Reader
+    double: Double
+    running: Running
+    text: str
+
+
+class Kept:
+    """A page that stays open for all tests that leave it as they found it."""
+
+    def __init__(self, orca: Reader) -> None:
+        self._orca = orca
+        self._stack = ExitStack()
+        self._shown: Shown | None = None
+
+    def shown(self) -> Shown:
+        """Return the page, opened anew where there is none or a test left a dialog in it."""
+        if self._shown is None or self._orca.page.locator("dialog[open]").count():
+            self.close()
+            double = self._stack.enter_context(served(Double()))
+            reader, running, text = self._stack.enter_context(opened(self._orca, double))
+            self._shown = Shown(reader, double, running, text)
+        return self._shown
+
+    def close(self) -> None:
+        """Close it, if it is open: another one comes into the same window."""
+        self._shown = None
+        self._stack.close()
+
+
+@pytest.fixture(scope="module")
+def kept(orca: Reader) -> Iterator[Kept]:
+    found = Kept(orca)
+    yield found
+    found.close()
+
+
 @pytest.fixture
-def reader(orca: Reader, double: Double) -> Iterator[Reader]:
-    with opened(orca, double) as (reader, *_):
-        yield reader
+def shown(kept: Kept) -> Iterator[Shown]:
+    """The page that stays open."""
+    found = kept.shown()
+    found.double.asked.clear()
+    yield found
+    found.running.more, found.running.state = {}, {}
+
+
+@pytest.fixture
+def reader(shown: Shown) -> Reader:
+    """The reader of the page that stays open."""
+    return shown.reader
 
 
 def focused(page: Any) -> tuple[str, str]:
@@ -123,18 +181,19 @@ def focus(reader: Reader, selector: str, words: str) -> None:
     reader.hears(lambda text: words in text, words, quiet_s=0.5)
 
 
-def test_all_of_it_is_read_and_headings_lead_through_it(orca: Reader, double: Double) -> None:
-    with opened(orca, double) as (_, _, text):
-        assert re.search("Page has .* 8 headings", text)
-        for words in ("800 µs", "Tare | toggle button | not pressed",
-                      "Time | horizontal slider", "footprint: {level_v: 0.02}",
-                      "table with 6 rows 3 columns", "radius | row header | 2 | cm",
-                      "radius, last ten seconds: "):  # fmt: skip
-            assert words in text, words
-        assert not re.search(r"median\d|answeredlost", text), "legends are for eyes"
-        orca.press_and_hear("h", "rings heading level 1")
-        for name in SECTIONS:
-            orca.press_and_hear("h", f"{name} heading level 2")
+def test_all_of_it_is_read_and_headings_lead_through_it(shown: Shown) -> None:
+    orca, text = shown.reader, shown.text
+    assert re.search("Page has .* 8 headings", text)
+    for words in ("800 µs", "Tare | toggle button | not pressed",
+                  "Time | horizontal slider", "footprint: {level_v: 0.02}",
+                  "table with 6 rows 3 columns", "radius | row header | 2 | cm",
+                  "radius, last ten seconds: "):  # fmt: skip
+        assert words in text, words
+    assert not re.search(r"median\d|answeredlost", text), "legends are for eyes"
+    focus(orca, "a.skip[href='#pad']", "To the pad")
+    orca.press_and_hear("h", "rings heading level 1")
+    for name in SECTIONS:
+        orca.press_and_hear("h", f"{name} heading level 2")
 
 
 def test_each_stop_of_the_tab_key_is_told_by_role_and_name(reader: Reader) -> None:
@@ -156,16 +215,15 @@ def test_each_stop_of_the_tab_key_is_told_by_role_and_name(reader: Reader) -> No
     }
 
 
-def test_nodes_of_the_graph_are_told_with_what_became_of_them(orca: Reader, double: Double) -> None:
+def test_nodes_of_the_graph_are_told_with_what_became_of_them(shown: Shown) -> None:
     fates = {"footprint": ("ran", ""), "boundary": ("skipped", "touched is false"),
              "circle": ("failed", "fewer than 3 points")}  # fmt: skip
     nodes = {n: {"outcome": o, "reason": r, "us": 12.0} for n, (o, r) in fates.items()}
-    with opened(orca, double) as (reader, running, _):
-        running.more = {"nodes": nodes}
-        focus(reader, "#nodes [data-name=frame]", "frame what the source gives")
-        reader.press_and_hear("Down", "footprint footprint_step ran 12 µs")
-        reader.press_and_hear("Down", "boundary boundary_step + touched is false + skipped")
-        reader.press_and_hear("Down", "circle output circle_step + fewer than 3 points + failed")
+    reader, shown.running.more = shown.reader, {"nodes": nodes}
+    focus(reader, "#nodes [data-name=frame]", "frame what the source gives")
+    reader.press_and_hear("Down", "footprint footprint_step ran 12 µs")
+    reader.press_and_hear("Down", "boundary boundary_step + touched is false + skipped")
+    reader.press_and_hear("Down", "circle output circle_step + fewer than 3 points + failed")
 
 
 def test_cells_of_the_pad_are_told_by_arrow_keys(reader: Reader) -> None:
@@ -177,45 +235,55 @@ def test_cells_of_the_pad_are_told_by_arrow_keys(reader: Reader) -> None:
     assert sum(one.startswith("Row 5") for one in said) == 1, said
 
 
-def test_results_are_told_every_two_seconds_at_most_and_can_be_hushed(reader: Reader) -> None:
-    reader.said()
-    time.sleep(10)
-    told = [one for one in reader.said() if one.startswith("circle, x ")]
-    assert 2 <= len(told) <= 6, told
-    assert len(set(told)) == len(told)
-    focus(reader, "#keys", "opens dialog")
-    reader.press_and_hear("Return", "Keys + dialog")
-    focus(reader, "#spoken", "Tell results to screen readers")
-    reader.press_and_hear("space", "not checked")
-    focus(reader, "#help-close", "Close")
-    reader.press("Return")
-    time.sleep(4)
-    reader.said()
-    time.sleep(8)
-    assert [one for one in reader.said() if "circle" in one] == []
-    reader.page.evaluate("localStorage.clear()")
+def test_results_are_told_every_two_seconds_at_most_and_can_be_hushed(
+    orca: Reader, kept: Kept, double: Double
+) -> None:
+    kept.close()
+    with opened(orca, double) as (reader, *_):
+        reader.said()
+        time.sleep(10)
+        told = [one for one in reader.said() if one.startswith("circle, x ")]
+        assert 2 <= len(told) <= 6, told
+        assert len(set(told)) == len(told)
+        focus(reader, "#keys", "opens dialog")
+        reader.press_and_hear("Return", "Keys + dialog")
+        focus(reader, "#spoken", "Tell results to screen readers")
+        reader.press_and_hear("space", "not checked")
+        focus(reader, "#help-close", "Close")
+        reader.press("Return")
+        time.sleep(4)
+        reader.said()
+        time.sleep(8)
+        assert [one for one in reader.said() if "circle" in one] == []
+        reader.page.evaluate("localStorage.clear()")
 
 
-def test_taring_and_holding_still_are_told_once_done(orca: Reader, double: Double) -> None:
-    with opened(orca, double) as (reader, running, _):
-        focus(reader, "#tare", "Tare toggle button not pressed")
-        reader.press("space")
-        double.heard("tare")
-        running.state = {"tared": True}
-        reader.hears(lambda text: re.search(r"(^|\| )pressed", text), "that it is tared")
-        focus(reader, "#pause", "Pause push button")
-        reader.press("space")
-        double.heard("pause")
-        running.state = {"paused": True}
-        reader.hears(lambda text: "paused: circle" in text, "that it is held")
+def test_taring_and_holding_still_are_told_once_done(shown: Shown) -> None:
+    reader, double, running, _ = shown
+    focus(reader, "#tare", "Tare toggle button not pressed")
+    reader.press("space")
+    double.heard("tare")
+    running.state = {"tared": True}
+    reader.hears(lambda text: re.search(r"(^|\| )pressed", text), "that it is tared")
+    focus(reader, "#pause", "Pause push button")
+    reader.press("space")
+    double.heard("pause")
+    running.state = {"paused": True}
+    reader.hears(lambda text: "paused: circle" in text, "that it is held")
+    running.state = {}
+    reader.page.wait_for_selector("#pause span:text-is('Pause')")
 
 
 def test_a_switch_tells_what_it_came_to(reader: Reader) -> None:
     focus(reader, "#theme", "Theme: system push button")
     reader.press_and_hear("space", "Theme: light")
+    for choice in ("dark", "system"):
+        reader.page.locator("#theme").click()
+        reader.page.wait_for_selector(f"#theme:text-is('Theme: {choice}')")
 
 
-def test_a_setting_is_told_as_it_changes(reader: Reader, double: Double) -> None:
+def test_a_setting_is_told_as_it_changes(shown: Shown) -> None:
+    reader, double, *_ = shown
     focus(
         reader,
         "input[type=range][aria-label='footprint, factor']",
@@ -225,15 +293,18 @@ def test_a_setting_is_told_as_it_changes(reader: Reader, double: Double) -> None
     assert double.heard("set")["value"] == 3
 
 
-def test_a_wrong_file_and_its_mending_are_told(reader: Reader, double: Double) -> None:
+def test_a_wrong_file_and_its_mending_are_told(shown: Shown) -> None:
+    reader, double, *_ = shown
     errors = [{"line": 3, "column": 9, "text": "level_v: must be > 0, got -1"}]
     reader.said()
     double.say({"type": "trouble", "version": 2, "errors": errors})
     reader.hears(lambda text: "The old graph still runs" in text and "Line 3, column 9: level_v" in text,
                  "the error with its place")  # fmt: skip
+    double.say({"type": "trouble", "version": 2, "errors": []})
 
 
-def test_a_lost_connection_is_told_once(orca: Reader) -> None:
+def test_a_lost_connection_is_told_once(orca: Reader, kept: Kept) -> None:
+    kept.close()
     with served(Double()) as double, opened(orca, double) as (reader, *_):
         pass
     said = reader.hears(lambda text: "Connection lost" in text, "that it is lost", 30, quiet_s=6)

@@ -12,6 +12,7 @@ from tactile_graph_stress.commands.stress import stress
 from tactile_graph_stress.report.markdown import markdown
 from tactile_graph_stress.report.table import troubles
 from tactile_graph_stress.study import Row
+from tactile_graph_stress.subject import KINDS
 from tactile_graph_stress.verdict import Outcome, Verdict
 
 
@@ -104,6 +105,7 @@ def test_wrong_usage_is_told(args, words):
 
 
 @pytest.mark.slow
-def test_no_built_in_step_breaks():
-    result = run()
+@pytest.mark.parametrize("kind", KINDS)  # which every step is of one of
+def test_no_built_in_step_breaks(kind):
+    result = run(kind)
     assert result.exit_code == 0, result.output

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from helpers_many import command, ran, surroundings, write_plugin
+from helpers_many import command, ran, ran_here, surroundings, write_plugin
 from tactile_graph import load
 from tactile_graph.cli import cli
 
@@ -51,7 +51,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (path / "lately.yaml").write_text(LATELY)
     (path / "endless.yaml").write_text(ENDLESS)
     for name, seed in (("a.zarr", "1"), ("b.zarr", "2")):
-        got = ran(path, "convert", name, *DISCS, "--with", "frames=700", "--seed", seed)
+        got = ran_here(path, "convert", name, *DISCS, "--with", "frames=700", "--seed", seed)
         assert got.returncode == 0, got.stderr
     write_arrays(path)
     return path
@@ -78,9 +78,9 @@ def whole(folder: Path) -> bytes:
     return written(folder, "whole.csv", "deadly.yaml", "a.zarr")[0]
 
 
-def written(folder: Path, name: str, *words: str) -> tuple[bytes, str]:
-    """Return what a run wrote, and what it said."""
-    got = ran(folder, "run", *words, "-o", name)
+def written(folder: Path, name: str, *words: str, here: bool = True) -> tuple[bytes, str]:
+    """Return what a run wrote, and what it said; in a process of its own only where asked for."""
+    got = (ran_here if here else ran)(folder, "run", *words, "-o", name)
     assert got.returncode == 0, got.stderr
     return (folder / name).read_bytes(), got.stderr
 
@@ -131,7 +131,7 @@ def pressed(folder: Path) -> Path:
     values[2200, 3, 3] = np.nan
     grid = {"pitch_cm": np.array((1.3, 1.3)), "origin_cm": np.zeros(2), "quantity": "volt"}
     np.savez(folder / "c.npz", values=values, time_s=0.02 * k, **grid)  # type: ignore[arg-type]
-    got = ran(folder, "convert", "c.npz", "c.zarr")
+    got = ran_here(folder, "convert", "c.npz", "c.zarr")
     assert got.returncode == 0, got.stderr
     return folder / "c.npz"
 
@@ -195,7 +195,7 @@ def test_state_and_garbage_go_in_one_process_and_are_told(folder: Path) -> None:
 @pytest.mark.slow
 def test_a_damaged_archive_is_refused_as_by_one_process(folder: Path) -> None:
     words = ("run", "circle-1", "damaged.npz", "-o", "x.csv")
-    one, two = ran(folder, *words), ran(folder, *words, "--workers", "2")
+    one, two = ran_here(folder, *words), ran_here(folder, *words, "--workers", "2")
     assert "Bad CRC-32" in one.stderr
     assert (two.returncode, two.stderr) == (one.returncode, one.stderr)
     assert not [*folder.glob("*x.csv*")]
@@ -276,7 +276,7 @@ class Running:
 @pytest.mark.slow
 @pytest.mark.parametrize("recording", ["a.zarr", "a.npz"])
 def test_a_deadly_frame_is_told_and_left_out(folder: Path, recording: str) -> None:
-    got = ran(folder, "run", "deadly.yaml", recording, "--frames", "200", "--workers", "2",
+    got = ran_here(folder, "run", "deadly.yaml", recording, "--frames", "200", "--workers", "2",
               "--set", "image.at=[150]", "-o", "d.csv")  # fmt: skip
     assert got.returncode == 1
     assert "frame 150: workers died of it each time: left out" in got.stderr
@@ -318,11 +318,12 @@ def test_an_ended_run_ends_its_workers_and_goes_on_with_resume(
     if number != signal.SIGKILL:
         assert running.process.returncode == 128 + number
         assert re.search(rf"\d+ frames are kept: --resume goes on with {name}", said)
-    got = ran(folder, *running.words, "--resume")
+    again = ran if number == signal.SIGINT else ran_here
+    got = again(folder, *running.words, "--resume")
     assert "going on from frame" not in got.stdout
     assert "700 frames" in got.stderr, got.stderr
     assert (folder / name).read_bytes() == whole
-    assert "is done already" in ran(folder, *running.words, "--resume").stderr
+    assert "is done already" in ran_here(folder, *running.words, "--resume").stderr
 
 
 @pytest.mark.slow
@@ -359,10 +360,10 @@ def test_what_another_code_made_is_not_gone_on_with(folder: Path) -> None:
 def test_what_a_killed_run_left_of_a_whole_file_is_taken(folder: Path) -> None:
     (folder / ".j.csv.joined.part").write_text("half of it")
     words = ("run", "circle-1", "a.zarr", "--frames", "30", "--workers", "1", "-o", "j.csv")
-    assert ran(folder, *words).returncode == 0
+    assert ran_here(folder, *words).returncode == 0
     (folder / ".j.csv.parts").write_text("left")
     (folder / ".j.csv.journal").write_text("left")
-    assert "is done already" in ran(folder, *words, "--resume").stderr
+    assert "is done already" in ran_here(folder, *words, "--resume").stderr
     assert [p.name for p in folder.glob(".j.csv*")] == []
 
 
@@ -372,15 +373,15 @@ def test_a_short_run_is_answered_by_the_code_that_one_process_uses(
     folder: Path, source: tuple[str, ...]
 ) -> None:
     words = ("describe", *source, "--frames", "60")
-    one, _ = written(folder, "one.csv", *words)
-    two, _ = written(folder, "two.csv", *words, "--workers", "2")
+    one, _ = written(folder, "one.csv", *words, here=False)
+    two, _ = written(folder, "two.csv", *words, "--workers", "2", here=False)
     assert one == two
 
 
 @pytest.mark.slow
 def test_a_run_that_never_began_leaves_nothing(folder: Path) -> None:
     pytest.importorskip("distributed", reason="the 'cluster' extra is not installed")
-    got = ran(folder, "run", "circle-1", "a.zarr", "-o", "x.csv", "--on", "tcp://127.0.0.1:9")
+    got = ran_here(folder, "run", "circle-1", "a.zarr", "-o", "x.csv", "--on", "tcp://127.0.0.1:9")
     assert got.returncode == 2
     assert "no scheduler answers there" in got.stderr
     assert [p.name for p in folder.iterdir() if "x.csv" in p.name] == []

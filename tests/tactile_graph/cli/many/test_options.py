@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from helpers_many import ran, write_plugin
+from helpers_many import ran, ran_here, write_plugin
 
 DISCS = ("--source", "simulate", "--with", "scene=discs")
 LADDER = """
@@ -62,7 +62,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_plugin(path)
     for name, text in (("ladder", LADDER), ("lately", LATELY), ("next", NEXT)):
         (path / f"{name}.yaml").write_text(text)
-    got = ran(path, "convert", "a.npz", *DISCS, "--with", "frames=90")
+    got = ran_here(path, "convert", "a.npz", *DISCS, "--with", "frames=90")
     assert got.returncode == 0, got.stderr
     return path
 
@@ -73,23 +73,27 @@ def stores(folder: Path) -> Path:
     pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
     for name, scene, n in (("p", "passing", 60), ("q", "discs", 80)):
         words = ("--source", "simulate", "--with", f"scene={scene}", "--with", f"frames={n}")
-        got = ran(folder, "convert", f"{name}.zarr", *words, "--seed", str(n))
+        got = ran_here(folder, "convert", f"{name}.zarr", *words, "--seed", str(n))
         assert got.returncode == 0, got.stderr
     return folder
 
 
-def both(folder: Path, *words: str) -> list[str]:
-    """Run a command in one process and by two workers; ``{}`` in its words is another each time."""
+def both(folder: Path, *words: str, here: bool = True) -> list[str]:
+    """Run a command in one process and by two workers; ``{}`` in its words is another each time.
+
+    Only where asked for are these processes of their own.
+    """
     said = []
     for name, more in (("one", ()), ("two", ("--workers", "2"))):
-        got = ran(folder, *(w.format(name) for w in words), *more)
+        got = (ran_here if here else ran)(folder, *(w.format(name) for w in words), *more)
         assert got.returncode == 0, got.stderr
         said.append(got.stdout + got.stderr)
     return said
 
 
 def test_compare(folder: Path) -> None:
-    _, said = both(folder, "compare", "circle-1", "circle-3", "a.npz", "--csv", "{}.csv")
+    _, said = both(folder, "compare", "circle-1", "circle-3", "a.npz", "--csv", "{}.csv",
+                   here=False)  # fmt: skip
     assert (folder / "one.csv").read_bytes() == (folder / "two.csv").read_bytes()
     assert len((folder / "one.csv").read_text().splitlines()) > 90
     assert "times were taken with 2 workers side by side" in " ".join(said.split())
@@ -148,7 +152,7 @@ def rows_of(path: Path) -> list[list[str]]:
 
 
 def succeeded(folder: Path, *words: str) -> str:
-    got = ran(folder, *words)
+    got = ran_here(folder, *words)
     assert got.returncode == 0, got.stderr
     return got.stdout + got.stderr
 
@@ -232,14 +236,14 @@ def test_a_worker_that_dies_of_a_frame_of_a_recording_is_told(stores: Path) -> N
 
 
 def test_what_keeps_state_stays_in_one_process_and_says_so(folder: Path) -> None:
-    got = ran(folder, "compare", "tracks", "--frames", "5", "--workers", "2")
+    got = ran_here(folder, "compare", "tracks", "--frames", "5", "--workers", "2")
     assert got.returncode == 0
     assert "in one process:" in got.stderr
     assert "keeps state from frame to frame" in got.stderr
 
 
 def test_a_worker_that_dies_of_a_frame_is_told(folder: Path) -> None:
-    got = ran(folder, "compare", "deadly.yaml --set image.at=[7]", "circle-1", "a.npz",
+    got = ran_here(folder, "compare", "deadly.yaml --set image.at=[7]", "circle-1", "a.npz",
               "--frames", "20", "--workers", "2", "--csv", "dead.csv")  # fmt: skip
     assert got.returncode == 0, got.stderr
     assert "frame 7: workers died of it each time: left out" in got.stdout + got.stderr
