@@ -22,7 +22,6 @@ WANTED = (
     "tactile_graph.compiled.whole",
     "tactile_graph.engine.outcomes.promises",
     "tactile_graph.steps.checks",
-    "tactile_graph_sources.recording",
     "tactile_graph.cli.output.writers",
 )
 

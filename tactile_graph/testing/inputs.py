@@ -33,7 +33,7 @@ from tactile_graph.wires import (
 DEEPEST = 3
 """How many steps may stand one before the other to make a value."""
 Maker = Callable[[Case], Any]
-_made: WeakKeyDictionary[Any, dict[tuple[Any, ...], bytes]] = WeakKeyDictionary()
+_made: WeakKeyDictionary[Any, dict[tuple[Any, ...] | None, bytes]] = WeakKeyDictionary()
 """What steps made, packed, by what it was made of; several steps may take the same."""
 
 
@@ -166,7 +166,9 @@ def _through(
 
     def make(case: Case) -> Any:
         inputs = {name: maker(case) for name, maker in makers.items()}
-        key = (path, pickle.dumps((inputs, case.number)))
+        key: tuple[Any, ...] | None = None
+        with suppress(Exception):  # of what cannot be pickled each value is made anew
+            key = (path, pickle.dumps((inputs, case.number)))
         if key in known:
             return pickle.loads(known[key])
         try:
@@ -178,8 +180,9 @@ def _through(
         except Exception as error:
             raise Unmakeable(f"{signature.name} gives none: {error}", case=True) from None
         made = spoiled(reduce(getattr, path, value), case.number)
-        with suppress(Exception):  # what cannot be pickled is told when that step is tried
-            known[key] = pickle.dumps(made)
+        if key is not None:
+            with suppress(Exception):  # what cannot be pickled is told when that step is tried
+                known[key] = pickle.dumps(made)
         return made
 
     return make
