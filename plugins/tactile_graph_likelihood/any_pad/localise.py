@@ -25,6 +25,7 @@ from tactile_graph_likelihood.any_pad.posterior import (
     HIDDEN,
     AnyPadPosterior,
     evenly_spread,
+    inflated,
     on_any_pad,
     resized,
     stretched,
@@ -64,7 +65,7 @@ FAINT = Pattern(1.0, 0.4, 2.5)
 NEGLIGIBLE = 0.03
 """Probability over the likeliest pressure's below which one is left out."""
 
-PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 1.9}
+PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 2.8}
 """Share that is added to the variance where a pressure of one or two numbers explains the load: no
 face presses quite like that, and foam shares gains that the fit takes for the outline's."""
 
@@ -320,7 +321,8 @@ class AnyPad:
 
     def around(self, readings: Readings, tops: Mapping[str, Likeliest]) -> Posterior:
         """Return the posterior around the most likely outlines, over all pressures."""
-        shared = shared_by(tops.values(), readings.touched)
+        # A pressure is told by all of a face: elements count for as much less along both axes.
+        shared = shared_by(tops.values(), readings.touched) ** 2
         logs = log_chances(tops, shared, readings.touched)
         best = max(logs, key=logs.__getitem__)
         shares = {part: math.exp(log - logs[best]) for part, log in logs.items()}
@@ -374,19 +376,21 @@ class AnyPad:
     def _on_any_pad(
         self, its: Posterior, readings: Readings, evidence: float, pressed: float, hidden: float
     ) -> AnyPadPosterior:
-        """Return a posterior widened by what neighbours share, and by what a pattern may hide.
+        """Return a posterior widened by its pressure, and by what a pattern may hide.
 
         ``pressed`` is a factor on its variance, ``hidden`` a variance in cm^2 of its lengths.
         """
         unevenness = self.told.noise.sigma * float(readings.grid[2]) ** 1.5
-        inflation = pressed * variance_inflation(its.neighbours, readings.touched)
-        return stretched(on_any_pad(its, evidence, inflation, unevenness, hidden), readings)
+        return stretched(on_any_pad(its, evidence, pressed, unevenness, hidden), readings)
 
     def _normal(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
+        """Return the normal distribution around a fit, widened by what neighbours share."""
         if part == EVEN and self.quick:
-            return self.told.normal_around(top, self._count + 1, self._pull(readings, top))
-        own = 0 if part == EVEN else len(PRESSURES[part])
-        return self.told.normal_around(top, self._count + own)
+            its = self.told.normal_around(top, self._count + 1, self._pull(readings, top))
+        else:
+            own = 0 if part == EVEN else len(PRESSURES[part])
+            its = self.told.normal_around(top, self._count + own)
+        return inflated(its, variance_inflation(top.fit.neighbours, readings.touched))
 
     def _pull(self, readings: Readings, top: Likeliest) -> Values:
         """Return the slope of what the fit's own scatter says of the law's exponent."""
@@ -418,14 +422,20 @@ class AnyPad:
         return max(found, self._normal(part, readings, top), key=lambda its: its.centre_std_cm)
 
     def _sampled(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
-        """Return the posterior under a pressure, with the noise that its fit has found."""
+        """Return the posterior under a pressure, with the noise that its fit has found.
+
+        Where neighbours are alike, readings scatter less about their own mean than gains do, by as
+        much as elements are shared.
+        """
         point = self.told.point_of(top)
+        shared = variance_inflation(top.fit.neighbours, readings.touched)
         large = readings.states.size > LARGE_PAD
         strays = strays_beyond(self.told, readings, point)
         contrast = 1.0
         if part == EVEN and not large:
             contrast = contrast_of(self.told.noise, float(point[-2]), readings, self.law)
         noise = learned(self.told.noise, point[-2:], readings.touched, strays, contrast)
+        noise = changed(noise, sigma=noise.sigma * math.sqrt(shared))
         loose = looseness(readings)
         if part == EVEN and self.quick and self.told.kind == DISC:
             return self._with(noise, "contrast").posterior_around(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from tactile_graph_likelihood.geometry.outlines import DISC, sizes
+from tactile_graph_likelihood.geometry.outlines import DISC, Values, sizes
 from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
@@ -92,9 +92,7 @@ def on_any_pad(
     values = {name: getattr(found, name) for name in _FIELDS}
     values["usual_std_cm"] = usual * unevenness / math.sqrt(max(size, LEAST))
     values["log_evidence"] = log_evidence
-    if inflation > 1.0:
-        values["covariance"] = inflation * found.covariance
-        values["points"] = found.mean + math.sqrt(inflation) * (found.points - found.mean)
+    values |= _wider(found, inflation)
     if hidden_cm2 > 0.0:
         covariance, lengths = values["covariance"].copy(), 2 + sizes.call(found.kind)
         covariance.flat[: lengths * (len(covariance) + 1) : len(covariance) + 1] += hidden_cm2
@@ -103,6 +101,18 @@ def on_any_pad(
     its = object.__new__(AnyPadPosterior)
     vars(its).update(values)  # a frozen dataclass sets its fields one by one, by a call each
     return its
+
+
+def inflated(found: Posterior, inflation: float) -> Posterior:
+    """Return a posterior whose variance is so many times as large, at least 1."""
+    return changed(found, **wider) if (wider := _wider(found, inflation)) else found
+
+
+def _wider(found: Posterior, inflation: float) -> dict[str, Values]:
+    if inflation <= 1.0:
+        return {}
+    points = found.mean + math.sqrt(inflation) * (found.points - found.mean)
+    return {"covariance": inflation * found.covariance, "points": points}
 
 
 def evenly_spread(found: AnyPadPosterior) -> AnyPadPosterior:
