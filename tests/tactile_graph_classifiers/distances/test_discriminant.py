@@ -12,6 +12,7 @@ from tactile_graph import Frame, load
 from tactile_graph.errors import DataError, PipelineError, RuleError
 from tactile_graph_classifiers.database.choice import Choice, Manner
 from tactile_graph_classifiers.database.opening import load_known
+from tactile_graph_classifiers.distances import choosing
 from tactile_graph_classifiers.distances.canonical import Space, WithLogarithms
 from tactile_graph_classifiers.distances.choosing import Examples, choose, left_out_squares
 from tactile_graph_classifiers.distances.discriminant import CanonicalDiscriminant
@@ -230,6 +231,21 @@ def test_another_unit_is_refused_when_the_pipeline_is_loaded_where_it_is_known(s
 
 
 # -- its parts -------------------------------------------------------------------------------
+
+
+def test_of_the_same_examples_the_manner_is_chosen_once(monkeypatch):
+    calls = []
+    monkeypatch.setattr(choosing, "choose", lambda its: calls.append(its) or choose(its))
+    choosing._chosen.cache_clear()
+    some, others = (examples(many(3, seed)) for seed in (3, 4))
+    first = choosing.choose_once(some)
+    assert choosing.choose_once(examples(many(3, 3))) is first
+    assert first == choose(some)
+    choosing.choose_once(others)
+    assert len(calls) == 2
+    for part, known in zip(calls[0], some, strict=True):
+        assert (part == known).all()
+    choosing._chosen.cache_clear()
 
 
 def test_in_its_space_readings_of_an_object_vary_alike_in_every_direction():

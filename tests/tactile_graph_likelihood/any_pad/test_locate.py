@@ -11,6 +11,7 @@ import pytest
 from helpers_likelihood import made
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
+from tactile_graph_likelihood.any_pad import localise
 from tactile_graph_likelihood.any_pad.choose import Locate
 from tactile_graph_likelihood.any_pad.from_frame import variance_inflation
 from tactile_graph_likelihood.any_pad.localise import is_scattered
@@ -326,6 +327,31 @@ def test_what_hangs_together_widens(neighbours, least, most):
 
 @many
 @pytest.mark.slow
+@plain
+@pytest.mark.parametrize(
+    ("kind", "least", "most"), [("gains correlated", 1.2, 2.0), ("8 bits", 1, 1)]
+)
+def test_where_neighbours_are_alike_gains_scatter_more_than_they_seem_to(
+    kind, least, most, monkeypatch
+):
+    (frame,) = Bench(KINDS[kind], np.random.default_rng(6)).frames(1)
+    noises = []
+    learned = localise.learned
+
+    def kept(*args):
+        noises.append(learned(*args))
+        return noises[-1]
+
+    taken = []
+    monkeypatch.setattr(localise, "learned", kept)
+    its = localise.AnyPad._with
+    monkeypatch.setattr(
+        localise.AnyPad, "_with", lambda *args: (taken.append(args[1]), its(*args))[1]
+    )
+    LocateDisc().posterior(frame.image)
+    assert least <= taken[-1].sigma / noises[-1].sigma <= most
+
+
 def test_an_outline_lies_on_the_pad_mostly():
     """One whose rim is as likely beyond the pad's edge as before it comes out before it."""
     frame = next(iter(Bench(BASE, np.random.default_rng(7)).frames(1)))

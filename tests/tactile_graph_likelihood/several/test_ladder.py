@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from scipy.special import ndtr
 
 from helpers_joint import DISCS, problem_of_discs
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE
 from tactile_graph_likelihood.several.joint_posterior import Outlines, add_outline
-from tactile_graph_likelihood.several.ladder import Ladder, dilated, neighbours
-from tactile_graph_likelihood.single.element_terms import UNKNOWN
+from tactile_graph_likelihood.several.ladder import ODD, Ladder, dilated, neighbours
+from tactile_graph_likelihood.single.element_terms import LEAST, SIGMA, UNKNOWN, VOIDS, on_level
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")
 
@@ -35,6 +36,17 @@ def test_what_outlines_explain_leaves_little_and_what_they_miss_leaves_much():
     assert one[right].sum() > both[right].sum() + 40.0
     unknown = np.full_like(problem.states, UNKNOWN)
     assert not Ladder(problem._replace(states=unknown), KINDS, 3.0, 1.0).unexplained(both).any()
+
+
+def test_what_is_left_unexplained_is_what_an_explanation_would_add():
+    problem = problem_of_discs(3)
+    ladder, load = Ladder(problem, KINDS, 3.0, 1.0), load_of(problem, DISCS)
+    sigma, voids, least = (problem.noise[k] for k in (SIGMA, VOIDS, LEAST))
+    mu = np.log(np.maximum(load, 1e-9))
+    half = 0.5 * ((problem.logs - mu) / sigma) ** 2
+    on = np.where(half > ODD, np.minimum(half, on_level.call(problem.noise)), 0.0)
+    off = -np.log1p(-(1.0 - voids) * ndtr((mu - least) / sigma))
+    assert ladder.unexplained(load) == pytest.approx(np.where(ladder.on, on, off))
 
 
 def test_true_outlines_leave_no_more_unexplained_than_usual_and_others_do():

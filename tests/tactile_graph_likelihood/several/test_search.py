@@ -5,8 +5,12 @@ import pytest
 
 from helpers_joint import DISCS, problem_of_discs
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR, unpacked
+from tactile_graph_likelihood.several.joint_posterior import Outlines, gain, log_rest_of
+from tactile_graph_likelihood.several.maximise_jointly import likeliest_of
+from tactile_graph_likelihood.several.pad import laid
 from tactile_graph_likelihood.several.scene import TURNS, Configuration, like
 from tactile_graph_likelihood.several.search import Search
+from tactile_graph_likelihood.single.element_terms import OFF, ON
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")
 
@@ -48,6 +52,49 @@ def test_elements_belong_to_the_outline_that_brings_most_or_the_nearest():
     assert own[4, 4] == 0
     assert own[4, 8] == 1
     assert (own[~search.on] == -1).all()
+
+
+def three_discs():
+    """Return the problem of three discs in a row that touch, of an even pad."""
+    bare = problem_of_discs()
+    row = np.array([[x, 8.0, 2.2, 4.5, 0.0, 0.0] for x in (4.5, 9.0, 13.5)])
+    found = Configuration(np.full(3, DISC), np.zeros(3, np.int64), row, 0.0)
+    load = laid(bare, found).load
+    states = np.where(load > 5.0, ON, OFF).astype(np.uint8)
+    logs = np.log(np.where(load > 5.0, load, 1.0))
+    return bare._replace(logs=logs, states=states), row
+
+
+def test_three_outlines_may_take_the_place_of_two_that_cover_three_objects():
+    problem, row = three_discs()
+    search = Search(problem, KINDS, 1.0, 1.0)
+    pairs = [pair for _, pair in search.parted(search.on, problem, 3)]
+    triples = search.threes(pairs[:1], search.on, problem)
+    worths = [worth for worth, _ in triples]
+    assert worths == sorted(worths, reverse=True)
+    best = triples[0][1]
+    assert len(best) == 3
+    assert np.abs(np.sort(best[:, 0]) - row[:, 0]).max() < 0.7
+    place = (0, 1), search.on, 100.0
+    two = search.sketched(pairs[0].copy(), problem)
+    drawn = [found.count for found in search.instead(place, problem, two, True)]
+    assert 3 in drawn
+    assert 3 not in [found.count for found in search.instead(place, problem, two, False)]
+
+
+def test_the_likeliest_of_some_starts_is_the_one_of_the_most_posterior():
+    problem = problem_of_discs(3)
+    starts = np.array([DISCS[0] + [off, 0.0, 0.0, 0.0, 0.0, 0.0] for off in (2.0, 0.3, -0.1, 40.0)])
+    which = likeliest_of.call(problem, DISC, 0, starts)
+    kinds, corners = np.array([DISC]), np.array([0])
+    logs = []
+    for start in starts:
+        one = Outlines(kinds, corners, start[None].copy())
+        rest = log_rest_of.call(problem, one)
+        logs.append(rest + gain.call(problem, one) if rest > -np.inf else rest)
+    assert which == int(np.argmax(logs))
+    assert logs[3] == -np.inf
+    assert likeliest_of.call(problem, DISC, 0, starts[3:]) == 0
 
 
 def test_a_search_may_begin_with_nothing_but_what_explains_all(monkeypatch):
