@@ -62,6 +62,7 @@ class Known(NamedTuple):
     low: Values
     high: Values
     extra: Values
+    dull: Values
     numbers: Values
     face: int
 
@@ -81,16 +82,21 @@ def known(kind: Kind, bench: Bench, frame: Frame) -> Known:
     noise_v = math.hypot(kind.noise_v, kind.offset_v / math.sqrt(3.0))
     shows_v = SUPPLY_V * (kind.turn_on_g / 100.0) ** kind.exponent / 80e3 * BIAS_OHM
     shows_v = shows_v * total / SUPPLY_V
-    on = volts > np.maximum(0.5 * shows_v, half)
+    on = volts > max(half, 1e-9)
     state = np.where(on, ON, OFF)
     state[on & (logs > math.log(kind.saturation_g) - 0.02)] = FULL
     state[bench.dead | bench.stuck] = SILENT
-    extra = noise_v / np.maximum(volts, 0.5 * shows_v) / kind.exponent
+    seen_v = np.maximum(volts, 0.5 * shows_v)
+    extra = noise_v / seen_v / kind.exponent
+    dull = np.zeros(volts.shape)
+    if noise_v > 0.0 and not half:
+        dull = kind.exponent * volts * np.exp(-0.5 * (volts / noise_v) ** 2)
+        dull = np.maximum(dull, 0.0) / (noise_v * math.sqrt(2.0 * math.pi))
     low, high = log_load(np.maximum(volts - half, 1e-9)), log_load(volts + half)
     numbers = np.array([
         kind.pitch_cm, kind.element_cm, kind.sigma, kind.voids, kind.strays, kind.turn_on_g
     ])  # fmt: skip
-    return Known(state, low, high, extra, numbers, FACES.index(kind.pressure.__name__))
+    return Known(state, low, high, extra, dull, numbers, FACES.index(kind.pressure.__name__))
 
 
 @numba.njit
@@ -164,11 +170,13 @@ def reading(known: Known, i: int, j: int, mean: float) -> float:
     """Return the log likelihood of an element's reading; ``mean`` is its load but for its gain."""
     sigma, voids, strays, turn_on = known.numbers[2:6]
     state, low, high = known.state[i, j], known.low[i, j], known.high[i, j]
-    mu, wide = math.log(max(mean, 1e-12)), math.hypot(sigma, known.extra[i, j])
-    shown, stray = 0.0, 0.0
-    if state == OFF:
+    extra, mu = known.extra[i, j], math.log(max(mean, 1e-12))
+    wide, shown, stray = math.hypot(sigma, extra), 0.0, 0.0
+    none = 1.0
+    if mean > 0.0:
         none = voids + (1.0 - voids) * below((math.log(turn_on) - mu) / sigma)
-        return math.log((1.0 - strays) * (none if mean > 0.0 else 1.0))
+    if state == OFF:
+        return math.log((1.0 - strays) * none)
     if state == FULL:
         shown = below((mu - high) / sigma)
     elif high > low + 1e-9:
@@ -178,9 +186,11 @@ def reading(known: Known, i: int, j: int, mean: float) -> float:
     else:
         z = (low - mu) / wide
         shown = math.exp(-0.5 * z * z) / (wide * math.sqrt(2.0 * math.pi))
+        shown *= below((low - math.log(turn_on)) / max(extra, 0.01))
         stray = math.exp(low) / (19.0 * turn_on) if low < math.log(21.0 * turn_on) else 0.0
     shown = (1.0 - strays) * (1.0 - voids) * shown if mean > 0.0 else 0.0
-    return math.log(max(shown + strays * stray, 1e-300))
+    read = shown + strays * stray + (1.0 - strays) * none * known.dull[i, j]
+    return math.log(max(read, 1e-300))
 
 
 @numba.njit
