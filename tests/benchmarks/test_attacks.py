@@ -71,4 +71,4 @@ def test_hostile_frames_are_answered_or_refused() -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="looks for processes where Linux tells them")
 def test_killed_runs_with_workers_are_resumed_to_the_same_file() -> None:
     pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
-    attacked("workers.py", "--tries", "4", "--kills", "2")
+    attacked("workers.py", "--tries", "4", "--kills", "3")
