@@ -166,6 +166,16 @@ def plain_kernels() -> Iterator[None]:
         yield
 
 
+@pytest.fixture
+def compiled_kernels() -> Iterator[None]:
+    """Machine code only, from the first call on: for what loops would take minutes over.
+
+    Only for what other tests compile as well, or the compiler takes as long.
+    """
+    with answered_by("compiled"):
+        yield
+
+
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int | None:
     """Keep single files and single tests in this process: starting others takes longer."""
     asked = [Path(arg.partition("::")[0]) for arg in config.args]

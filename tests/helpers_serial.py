@@ -87,7 +87,7 @@ class Kit:
     def pad(self, rng: np.random.Generator) -> Pad:
         """Return a pad as a user sees it: mostly empty, one blob, some noise."""
         rows, columns = self.shape
-        y, x = np.mgrid[:rows, :columns]
+        y, x = np.ogrid[:rows, :columns]
         cy, cx = rng.uniform(0, rows), rng.uniform(0, columns)
         blob = self.high * np.exp(-((y - cy) ** 2 + (x - cx) ** 2) / 8.0)
         noise = rng.integers(0, 3, self.shape)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import gzip
 import io
 import json
@@ -9,6 +10,7 @@ import struct
 import sys
 import zlib
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -171,23 +173,23 @@ def tiff(tags: dict[int, tuple[int, int, int]], rest: bytes = b"", following: in
 
 def pictures() -> Iterator[tuple[str, Make]]:
     """Yield PNG, TIFF, GIF, BMP and JPEG, and archives of them."""
-    packed = b"\x78\xda" + zeros_deflated(400) + struct.pack(">I", 0)
+    packed = cache(lambda: b"\x78\xda" + zeros_deflated(400) + struct.pack(">I", 0))
     for side in (1_900, 5_000, 13_000, 20_000, 60_000, 2**31 - 1):
-        yield f"PNG of {side} x {side}", file_of("a.png", lambda s=side: png(s, s, packed))
+        yield f"PNG of {side} x {side}", file_of("a.png", lambda s=side: png(s, s, packed()))
         yield (
             f"zip of a PNG of {side} x {side}",
             file_of(
-                "a.zip", lambda s=side: zipped({f"{i}.png": png(s, s, packed) for i in range(9)})
+                "a.zip", lambda s=side: zipped({f"{i}.png": png(s, s, packed()) for i in range(9)})
             ),
         )
-    text = b"a\0\0" + zlib.compress(bytes(50 << 20), 9)
+    text = cache(lambda: b"a\0\0" + zlib.compress(bytes(50 << 20), 9))
     yield (
         "PNG of a text of 50 MB",
-        file_of("a.png", lambda: png(8, 8, zlib.compress(bytes(72)), *([(b"zTXt", text)] * 20))),
+        file_of("a.png", lambda: png(8, 8, zlib.compress(bytes(72)), *([(b"zTXt", text())] * 20))),
     )
     yield (
         "PNG of a colour profile of 50 MB",
-        file_of("a.png", lambda: png(8, 8, zlib.compress(bytes(72)), (b"iCCP", text))),
+        file_of("a.png", lambda: png(8, 8, zlib.compress(bytes(72)), (b"iCCP", text()))),
     )
     small = picture(np.zeros((4, 4), np.uint8), "png")
     yield (
@@ -502,18 +504,20 @@ def mcap() -> Iterator[tuple[str, Make]]:
             for i in range(65_000)) + end,
         "an end that lies": head + record(2, struct.pack("<QQI", 2**60, 2**60, 0)) + mark,
     }  # fmt: skip
+    for what, content in found.items():
+        yield f"MCAP: {what}", file_of("a.mcap", lambda c=content: c)
     try:
         import zstandard
     except ImportError:
-        pass
-    else:
-        packed = zstandard.compress(channel + message * 8_000_000, 19)
-        sizes = struct.pack("<QQQI", 0, 0, len(channel + message * 8_000_000), 0)
-        found["a chunk of 350 MB packed"] = (
-            head + record(6, sizes + text(b"zstd") + struct.pack("<Q", len(packed)) + packed) + end
-        )
-    for what, content in found.items():
-        yield f"MCAP: {what}", file_of("a.mcap", lambda c=content: c)
+        return
+
+    def chunk() -> bytes:
+        data = channel + message * 8_000_000
+        packed = zstandard.compress(data, 19)
+        sizes = struct.pack("<QQQI", 0, 0, len(data), 0) + text(b"zstd")
+        return head + record(6, sizes + struct.pack("<Q", len(packed)) + packed) + end
+
+    yield "MCAP: a chunk of 350 MB packed", file_of("a.mcap", chunk)
 
 
 def stores() -> Iterator[tuple[str, Make]]:
@@ -553,11 +557,11 @@ def stores() -> Iterator[tuple[str, Make]]:
             without = "" if journal else ", no journal"
             yield f"store: {what}{without}", changed(part, change, journal)
 
-    def line(text: bytes) -> Make:
+    def line(text: bytes | Callable[[], bytes]) -> Make:
         def make(folder: Path) -> Path:
             store = changed("", lambda d: d, True)(folder)
             with (store / "frames.journal").open("ab") as file:
-                file.write(text)
+                file.write(text if isinstance(text, bytes) else text())
             return store
 
         return make
@@ -565,21 +569,22 @@ def stores() -> Iterator[tuple[str, Make]]:
     def sealed(text: bytes) -> bytes:
         return b"%08x %s\n" % (zlib.crc32(text), text)
 
-    packed = zlib.compress(bytes(1 << 30), 9)
-    import base64
+    def gigabyte() -> bytes:
+        packed = base64.b64encode(zlib.compress(bytes(1 << 30), 9))
+        return sealed(b'{"rows":[10,12],"values":0,"columns":"' + packed + b'"}')
 
-    for what, text in {
+    texts: dict[str, bytes | Callable[[], bytes]] = {
         "a line of 19 MB": b"x" * 19_000_000,
         "two million lines": b"x\n" * 2_000_000,
         "deep, and right": sealed(b'{"rows":' + b"[" * 900_000 + b"]" * 900_000 + b"}"),
         "frames of billions": sealed(b'{"rows":[10,999999999999],"values":0,"columns":""}'),
         "frames of billions, lost": sealed(b'{"rows":[10,999999999999],"values":0,"lost":"x"}'),
         "rows that are none": sealed(b'{"rows":"ab","values":0,"columns":""}'),
-        "columns of 1 GB": sealed(b'{"rows":[10,12],"values":0,"columns":"' + base64.b64encode(
-            packed) + b'"}'),
+        "columns of 1 GB": gigabyte,
         "150,000 blocks": b"".join(sealed(b'{"rows":[%d,%d],"values":0,"lost":"x"}' % (i, i + 1))
                                    for i in range(10, 150_000)),
-    }.items():  # fmt: skip
+    }  # fmt: skip
+    for what, text in texts.items():
         yield f"store: journal, {what}", line(text)
 
 

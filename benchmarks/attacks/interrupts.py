@@ -2,6 +2,7 @@
 
     python benchmarks/attacks/interrupts.py                # 50 tries, four minutes
     python benchmarks/attacks/interrupts.py --tries 1000
+    python benchmarks/attacks/interrupts.py --latest 3     # no later than 3 s after the start
 
 Each try runs an endless command with two workers and sends, at a moment drawn at random, Ctrl-C to
 the command alone, to all processes as a terminal does, or twice, or SIGTERM. The command must end
@@ -36,7 +37,7 @@ COMMANDS: dict[str, tuple[str, ...]] = {
     "reproduce": ("reproduce", "all", "--quick", "-o", "book"),
 }  # fmt: skip
 WAYS = ("alone", "alone", "all", "twice", "SIGTERM")
-LATEST_S, TWICE_S = 6.0, 0.5
+TWICE_S = 0.5
 SOON_S, LONGEST_S = 8.0, 30.0
 CODES = (130, 143, -signal.SIGINT, -signal.SIGTERM)
 """What a command ends with: a second Ctrl-C kills it while Python shuts down."""
@@ -101,12 +102,12 @@ def _left(session: int) -> list[int]:
     return left
 
 
-def attempts(n: int, seed: int) -> Iterator[Attempt]:
+def attempts(n: int, seed: int, latest_s: float) -> Iterator[Attempt]:
     """Yield what came of each try."""
     rng = random.Random(seed)
     for _ in range(n):
         name, way = rng.choice([*COMMANDS]), rng.choice(WAYS)
-        after_s, pause_s = rng.uniform(0.15, LATEST_S), rng.uniform(0.0, TWICE_S)
+        after_s, pause_s = rng.uniform(0.15, latest_s), rng.uniform(0.0, TWICE_S)
         begun_s = time.monotonic()
         with tempfile.TemporaryDirectory() as folder:
             why = wrong(name, way, after_s, pause_s, Path(folder))
@@ -115,8 +116,10 @@ def attempts(n: int, seed: int) -> Iterator[Attempt]:
 
 
 def main() -> int:
-    args = parser_of(str(__doc__), 50).parse_args()
-    return told(attempts(args.tries, args.seed), args)
+    parser = parser_of(str(__doc__), 50)
+    parser.add_argument("--latest", type=float, default=6.0, help="seconds from the start on")
+    args = parser.parse_args()
+    return told(attempts(args.tries, args.seed, args.latest), args)
 
 
 if __name__ == "__main__":

@@ -91,8 +91,8 @@ def marked(kit: Kit, pad: Pad, share: float) -> Pad:
     raw = bytearray(pad.astype(dtype).tobytes())
     at = int(len(raw) * share) // np.dtype(dtype).itemsize * np.dtype(dtype).itemsize
     at = min(at, len(raw) - 8)
-    head = len(kit.encode(kit.pad(np.random.default_rng(0)), 0)) - len(raw)
     if share == 0.5:  # two headers exactly half a frame apart look the same from either
+        head = len(kit.encode(pad, 0)) - len(raw)
         at = (len(raw) + head) // 2 - (0 if kit.lead_in else head)
     raw[at : at + len(mark)] = mark
     return np.frombuffer(bytes(raw), dtype).reshape(kit.shape)
@@ -105,7 +105,7 @@ def flicker(kit: Kit, pad: Pad, rng: np.random.Generator) -> Pad:
 
 def moving(kit: Kit, i: int, rng: np.random.Generator) -> Pad:
     """Return a pad with a blob that goes round, once in 100 frames."""
-    y, x = np.mgrid[: kit.shape[0], : kit.shape[1]]
+    y, x = np.ogrid[: kit.shape[0], : kit.shape[1]]
     cy = kit.shape[0] * (0.5 + 0.3 * np.sin(2 * np.pi * i / 100))
     cx = kit.shape[1] * (0.5 + 0.3 * np.cos(2 * np.pi * i / 100))
     blob = 0.8 * kit.high * np.exp(-((y - cy) ** 2 + (x - cx) ** 2) / 8.0)

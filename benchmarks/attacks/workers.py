@@ -2,6 +2,7 @@
 
     python benchmarks/attacks/workers.py                   # 20 kills of each kind
     python benchmarks/attacks/workers.py --tries 400       # 200 of each
+    python benchmarks/attacks/workers.py --kills 2         # of a run; then it is let end
 
 A run of `circle-1` with two workers over a store, or over an unpacked `.npz`, gets SIGKILL at a
 moment drawn at random, until it ends by itself: after each kill no process of it may be left, the
@@ -30,8 +31,6 @@ from tactile_graph import load
 
 FRAMES = 4000
 LONGEST_S = 3.0
-MOST_KILLS = 5
-"""Of one run; then it is let end."""
 GONE_S = 10.0
 NAME = "out.csv"
 RECORDINGS = ("frames.zarr", "frames.npz")
@@ -84,8 +83,8 @@ def write_array(store: Path, array: Path) -> None:
 class Killing:
     """A folder with a store and an array, and the files that one process makes of them."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path, most_kills: int) -> None:
+        self.folder, self.most_kills = folder, most_kills
         self._let_end("convert", "frames.zarr", "--source", "simulate", "--with",
                       f"frames={FRAMES}")  # fmt: skip
         write_array(folder / "frames.zarr", folder / "frames.npz")
@@ -113,7 +112,7 @@ class Killing:
         output = self.folder / NAME
         output.unlink(missing_ok=True)
         run, n_kills = self._begun(), 0
-        while n_kills < MOST_KILLS:
+        while n_kills < self.most_kills:
             with suppress(subprocess.TimeoutExpired):
                 run.wait(rng.random() * LONGEST_S)
                 break
@@ -131,7 +130,7 @@ class Killing:
         """Kill workers of a run; return what came of it, and what is wrong."""
         (self.folder / NAME).unlink(missing_ok=True)
         run, n_kills = self._begun(), 0
-        while run.poll() is None and n_kills < MOST_KILLS:
+        while run.poll() is None and n_kills < self.most_kills:
             time.sleep(rng.random() * LONGEST_S / 2)
             at_work = workers(run.pid)
             if at_work:
@@ -151,11 +150,11 @@ class Killing:
         return came, f"{hidden} are left" if hidden else ""
 
 
-def attack(n_tries: int, seed: int) -> Iterator[Attempt]:
+def attack(n_tries: int, seed: int, most_kills: int) -> Iterator[Attempt]:
     """Yield what came of killing runs, and their workers, in turn."""
     rng = random.Random(seed)
     with tempfile.TemporaryDirectory() as folder:
-        killing = Killing(Path(folder))
+        killing = Killing(Path(folder), most_kills)
         for i in range(n_tries):
             recording = RECORDINGS[i // 2 % 2]
             killing.over(recording)
@@ -167,8 +166,10 @@ def attack(n_tries: int, seed: int) -> Iterator[Attempt]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Attack, and return 1 if anything was lost, cut or left running."""
-    args = parser_of(__doc__ or "", 40).parse_args(arguments)
-    return told(attack(args.tries, args.seed), args)
+    parser = parser_of(__doc__ or "", 40)
+    parser.add_argument("--kills", type=int, default=5, help="of one run at most")
+    args = parser.parse_args(arguments)
+    return told(attack(args.tries, args.seed, args.kills), args)
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ def test_killed_commands_leave_whole_files() -> None:
 
 
 def test_interrupted_workers_end_soon_and_leave_nothing() -> None:
-    attacked("interrupts.py", "--tries", "6", "--seed", "11")
+    attacked("interrupts.py", "--tries", "6", "--seed", "11", "--latest", "3")
 
 
 def test_plugins_that_misbehave_cost_only_themselves() -> None:
@@ -71,4 +71,4 @@ def test_hostile_frames_are_answered_or_refused() -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="looks for processes where Linux tells them")
 def test_killed_runs_with_workers_are_resumed_to_the_same_file() -> None:
     pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
-    attacked("workers.py", "--tries", "4")
+    attacked("workers.py", "--tries", "4", "--kills", "3")

@@ -243,7 +243,7 @@ def test_a_step_that_draws_is_shared_only_by_those_who_draw_the_same(
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("plain_kernels")  # twins compiled half way differ in the last digit
+@pytest.mark.usefixtures("compiled_kernels")  # twins compiled half way differ in the last digit
 def test_every_shipped_pipeline_comes_to_the_same_in_one_graph_of_all() -> None:
     """What two pipelines share does not depend on the others, so this is every pair of them.
 

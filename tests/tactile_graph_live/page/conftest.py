@@ -49,19 +49,46 @@ class Window:
         """Return what the browser printed and what the page broke."""
         return [*self.printed, *self.page.evaluate("window.complaints ?? []")]
 
+    def leave(self) -> None:
+        """Go where there is nothing, and forget what was heard."""
+        self.page.goto("about:blank")
+        self.printed.clear()
+        self.asked_for.clear()
+
+
+@pytest.fixture(scope="module")
+def kept(browser: Any) -> Iterator[list[Window]]:
+    """The windows that tests of a module use in turn: to open one takes longer than its page."""
+    windows: list[Window] = []
+    yield windows
+    for one in windows:
+        one.context.close()
+
 
 @pytest.fixture
-def window(browser: Any) -> Iterator[Any]:
-    """Makes windows; all are closed in the end."""
-    made: list[Window] = []
+def window(browser: Any, kept: list[Window]) -> Iterator[Any]:
+    """Makes windows; all are left in the end.
 
-    def make(**options: Any) -> Window:
-        made.append(Window(browser, **options))
-        return made[-1]
+    One without options may have shown pages of other tests. Each server has a port of its own, so
+    a page finds nothing stored by them. What stays with a window is for one of its own: ``own``.
+    """
+    made: list[Window] = []
+    free = [*kept]
+
+    def make(*, own: bool = False, **options: Any) -> Window:
+        if own or options:
+            made.append(Window(browser, **options))
+            return made[-1]
+        if not free:
+            kept.append(Window(browser))
+            return kept[-1]
+        return free.pop()
 
     yield make
     for one in made:
         one.context.close()
+    for one in kept:
+        one.leave()
 
 
 @pytest.fixture
@@ -82,3 +109,4 @@ def page(window: Any, double: Any) -> Iterator[Any]:
     opened.page.wait_for_selector("#result-rows tr")
     yield opened.page
     assert opened.complaints() == []
+    opened.leave()  # its server need not wait for it

@@ -61,7 +61,7 @@ def test_trying_now_needs_no_wait(window: Any) -> None:
 
 
 def test_tries_come_at_longer_and_longer_intervals(window: Any) -> None:
-    page = window().page
+    page = window(own=True).page
     with served(Double()) as double:
         page.add_init_script("""
             window.tries = [];

@@ -29,6 +29,7 @@ def page(window: Any, double: Double) -> Iterator[Any]:
     yield opened.page
     # Only the tests themselves read back what is drawn.
     assert [c for c in opened.complaints() if "getImageData" not in c] == []
+    opened.leave()
 
 
 def pad(values: dict[tuple[int, int], int]) -> dict[str, Any]:
