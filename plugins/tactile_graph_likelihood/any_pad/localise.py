@@ -21,8 +21,16 @@ from tactile_graph_likelihood.any_pad.from_frame import (
 )
 from tactile_graph_likelihood.any_pad.hollow import without_hollow
 from tactile_graph_likelihood.any_pad.learned_pad import unevenness_left
+from tactile_graph_likelihood.any_pad.left_open import (
+    FEW,
+    PATTERN,
+    UNSEEN,
+    hidden_by,
+    is_scattered,
+    looseness,
+    unseen_share,
+)
 from tactile_graph_likelihood.any_pad.posterior import (
-    HIDDEN,
     AnyPadPosterior,
     evenly_spread,
     inflated,
@@ -79,26 +87,13 @@ UNSUREST = 2.3
 SHARPER = 0.6
 """As `FAINT`, the fall of a rectangle: its own shape tells more of that."""
 
-UNSEEN, NO_FALL, SOME_FALL = 0.06, -0.5, 1.0
-"""Share of a rectangle's sizes by which a fall to its rim may make it look smaller, unseen, where
-residuals fall by so many deviations; none where they fall by fewer than the second number."""
-
 FOAM = "foam"
-
-PATTERN = 3.0
-"""Pattern left over from which on an outline is not taken to press evenly where no pressure is
-looked at: on a large pad, and where a quick answer will do."""
 
 MANY = 8.0
 """Times what is told of strays from which on an outline is searched for anew, knowing of them."""
 
-FEW, LOOSE = 20, 0.3
-"""Touched elements of an outline so small that a void looks like its rim, and the deviation in
-pitches that is added to where its posterior is first looked for."""
-
-FAINT_TOUCH, SPARSE, FEW_POINTS = 5, 8.0, 64
-"""Touched elements, and how many times as many an outline around them covers, where they are rather
-noise: its posterior, as wide as the pad, is looked at in so many points."""
+FEW_POINTS = 64
+"""Points in which the posterior of what is rather noise is looked at, as wide as the pad."""
 
 PRESSURES: dict[str, list[float]] = {EVEN: [], **FIRST}
 """What each pressure estimates beside an even face's numbers, where its fit begins."""
@@ -471,31 +466,3 @@ def log_chances(tops: Mapping[str, Likeliest], shared: float, touched: int) -> d
     if len(tops) > 1:
         before = chances({part: top.fit for part, top in tops.items() if part != EVEN}, touched)
     return {part: top.evidence / shared + log_of(before[part]) for part, top in tops.items()}
-
-
-def unseen_share(fall: float) -> float:
-    """Return the share of a fall to the rim that may be there by what residuals show of it."""
-    return min(max((fall - NO_FALL) / (SOME_FALL - NO_FALL), 0.0), 1.0)
-
-
-def hidden_by(pattern: float, readings: Readings) -> float:
-    """Return the variance in cm^2 of an edge that pressure may move where a pattern is left over.
-
-    It grows with the pattern until that is `PATTERN`.
-    """
-    share = min(max(pattern / PATTERN, 0.0), 1.0)
-    return (share * HIDDEN * float(readings.grid[2])) ** 2
-
-
-def is_scattered(kind: int, readings: Readings, p: Values) -> bool:
-    """Return whether a few touched elements lie far apart in an outline, as where noise shows."""
-    if readings.touched > FAINT_TOUCH:
-        return False
-    a, b = (p[2], p[2]) if kind == DISC else (p[2], p[3])
-    return bool(4.0 * a * b >= SPARSE * readings.touched * readings.grid[2] ** 2)
-
-
-def looseness(readings: Readings) -> float:
-    """Return the variance in cm^2 by which an outline is less certain where few are touched."""
-    few = max(1.0 - readings.touched / FEW, 0.0)
-    return few * (LOOSE * float(readings.grid[2])) ** 2

@@ -14,7 +14,7 @@ from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.any_pad import localise
 from tactile_graph_likelihood.any_pad.choose import Locate
 from tactile_graph_likelihood.any_pad.from_frame import variance_inflation
-from tactile_graph_likelihood.any_pad.localise import is_scattered
+from tactile_graph_likelihood.any_pad.left_open import is_scattered
 from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse, LocateRectangle
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.geometry.outlines import DISC

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tactile_graph.wires import Image, Rectangle
-from tactile_graph_likelihood.any_pad.localise import NO_FALL, SOME_FALL, unseen_share
+from tactile_graph_likelihood.any_pad.left_open import NO_FALL, SOME_FALL, unseen_share
 from tactile_graph_likelihood.any_pad.locate import LocateRectangle
 from tactile_graph_likelihood.any_pad.posterior import AnyPadPosterior, evenly_spread, resized
 from tactile_graph_likelihood.geometry.outlines import RECTANGLE
