@@ -30,14 +30,13 @@ import numpy as np
 from by_workers import add_workers, in_order
 from numpy.typing import NDArray
 from second_simulator import BIAS_OHM, KINDS, SUPPLY_V, Bench, Kind, Outline
-from unknown_pads import Asked, Off, off, table
+from unknown_pads import BENCH_FRAMES, Asked, Off, off, table
 
 from tactile_graph import Circle, Frame, Rectangle, load
 from tactile_graph.compiled import warm_up
 
 Values = NDArray[np.float64]
 DEPENDENT = ("gains correlated", "gains by row", "foam 0.6 cells")
-BENCH_FRAMES = 12
 FACES = ("even", "leaning", "round_face", "hollow")
 """Names of the simulator's pressures, in the order that `pressure` numbers them."""
 SMALLEST_CM, LARGEST_CM = 0.5, 15.0

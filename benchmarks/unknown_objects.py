@@ -211,7 +211,8 @@ def score_of(pipeline: Pipeline, frames: Sequence[Frame]) -> Score:
 
 def evidence_of_truth(frame: Frame, step: LocateObjects) -> tuple[int, float]:
     """Return how many objects a step finds, and the true ones' evidence over its answer's."""
-    readings = observed(frame.image, load_pad("thesis"), 0.3)
+    pad = load_pad("thesis")
+    readings = observed(frame.image, pad, pad.geometry.gap_cm)
     problem, found = step.searched(readings)
     scenes = [part.scene for part in found.parts]
     true = step.expected.outlines([it.shape for it in frame.truth or ()], problem)

@@ -24,7 +24,6 @@ DISC_EVENLY, EVENLY = 4.0, 2.0
 """Independent points that one of a disc's evenly spread points is worth, and of a rectangle's; of a
 rectangle that reaches beyond the pad's edge, and of other outlines, one."""
 
-
 LEAST = 1e-6  # cm: a size that is none
 _FIELDS = [field.name for field in fields(Posterior)]
 

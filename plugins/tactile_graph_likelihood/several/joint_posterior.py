@@ -98,7 +98,7 @@ def add_outline(problem: JointProblem, outlines: Outlines, k: int) -> None:
 def add_outlines(problem: JointProblem, outlines: Outlines) -> None:
     """Add what all of some outlines bring to each element to what the others do."""
     for k in range(outlines.kinds.shape[0]):
-        lay(problem, outlines, k, 0, 0, problem.load, problem.share)
+        add_outline(problem, outlines, k)
 
 
 @compiled_as_is

@@ -25,8 +25,9 @@ from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.several.fit_footprints import Footprints, Kind, SeveralSettings
 from tactile_graph_likelihood.several.joint_posterior import JointProblem
-from tactile_graph_likelihood.several.pad import OnPad, laid, likeliest
+from tactile_graph_likelihood.several.pad import OnPad, likeliest
 from tactile_graph_likelihood.several.posteriors import goodness_of_load, posteriors
+from tactile_graph_likelihood.several.scene import laid
 from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
 from tactile_graph_likelihood.single.likely import likely
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, LEAST_VOIDS, MOST_VOIDS, Noise

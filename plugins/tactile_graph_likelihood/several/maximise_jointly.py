@@ -59,6 +59,15 @@ def _pulled_in(kind: int, corners: int, p: Values, noise: Values, prior: Values)
 
 
 @compiled_as_is
+def log_posterior(problem: JointProblem, outlines: Outlines) -> float:
+    """Return the log posterior of outlines given others, -inf where their prior is zero."""
+    total = log_rest_of(problem, outlines)
+    if total > -math.inf:
+        total += gain(problem, outlines)
+    return total
+
+
+@compiled_as_is
 def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enough: float) -> float:
     """Bring outlines, in place, to the top of their log posterior given others; return it.
 
@@ -82,9 +91,7 @@ def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enoug
         _pulled_in(kinds[k], corners[k], points[k], noise, prior)
     trial = points.copy()
     tried = Outlines(kinds, corners, trial)
-    now = log_rest_of(problem, outlines)
-    if now > -math.inf:
-        now += gain(problem, outlines)
+    now = log_posterior(problem, outlines)
     damping = 0.0
     for _ in range(most):
         slopes(problem, outlines, out)
@@ -105,9 +112,7 @@ def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enoug
                 for m in range(WIDTH):
                     trial[k, m] = points[k, m] + part * step[k * WIDTH + m]
                 _pulled_in(kinds[k], corners[k], trial[k], noise, prior)
-            new = log_rest_of(problem, tried)
-            if new > -math.inf:
-                new += gain(problem, tried)
+            new = log_posterior(problem, tried)
             if new > now:
                 break
             part *= 0.4
@@ -134,10 +139,7 @@ def likeliest_of(problem: JointProblem, kind: int, corners: int, points: Values)
     best, most = 0, -math.inf
     kinds, edges = np.full(1, kind, np.int64), np.full(1, corners, np.int64)
     for n in range(points.shape[0]):
-        one = Outlines(kinds, edges, points[n : n + 1])
-        now = log_rest_of(problem, one)
-        if now > -math.inf:
-            now += gain(problem, one)
+        now = log_posterior(problem, Outlines(kinds, edges, points[n : n + 1]))
         if now > most:
             best, most = n, now
     return best

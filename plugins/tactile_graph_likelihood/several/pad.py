@@ -17,7 +17,6 @@ from tactile_graph_likelihood.several.joint_posterior import (
     MIDDLE,
     WIDTH,
     JointProblem,
-    add_outlines,
 )
 from tactile_graph_likelihood.several.ladder import LEAST_PIECE
 from tactile_graph_likelihood.several.scene import Configuration, joined
@@ -143,13 +142,6 @@ class OnPad:
             scene = Search(its.problem._replace(noise=noise), its.kinds, its.more, shared)
             parts.append(replace(part, scene=scene))
         return OnPad(parts, self.counts)
-
-
-def laid(problem: JointProblem, found: Configuration) -> JointProblem:
-    """Return a problem beside outlines."""
-    its = problem._replace(load=problem.load.copy(), share=problem.share.copy())
-    add_outlines.call(its, found.outlines)
-    return its
 
 
 def parts_of(problem: JointProblem, expected: Expected, shared: float) -> list[Search]:

@@ -126,10 +126,7 @@ class Scene:
         self, found: Configuration, *left_out: int, before: JointProblem | None = None
     ) -> JointProblem:
         """Return the problem beside all outlines, but for some, and beside what already lies."""
-        before = before or self.problem
-        problem = before._replace(load=before.load.copy(), share=before.share.copy())
-        add_outlines.call(problem, found.without(*left_out).outlines)
-        return problem
+        return laid(before or self.problem, found.without(*left_out))
 
     def settled(
         self,
@@ -255,3 +252,10 @@ def joined(parts: list[Configuration]) -> Configuration:
         np.concatenate([p.points for p in parts]),
         0.0,
     )
+
+
+def laid(problem: JointProblem, found: Configuration) -> JointProblem:
+    """Return a problem beside outlines."""
+    its = problem._replace(load=problem.load.copy(), share=problem.share.copy())
+    add_outlines.call(its, found.outlines)
+    return its

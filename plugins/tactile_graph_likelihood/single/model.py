@@ -34,7 +34,7 @@ from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.noise import Noise, NoiseTaken
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem
-from tactile_graph_likelihood.single.readings import Readings, readings_of
+from tactile_graph_likelihood.single.readings import Readings, readings_of, size_of
 from tactile_graph_likelihood.single.sample import Sample, log_volume, sample_around
 from tactile_graph_likelihood.single.search import (
     ATTEMPTS,
@@ -386,9 +386,8 @@ def _prior_of(
     place: tuple[bytes, tuple[int, ...]], smallest_cm: float, largest_cm: float, whole: float
 ) -> Values:
     """Return a prior vector on elements of a grid, as bytes, of so many rows and columns."""
-    grid, (rows, columns) = np.frombuffer(place[0]), place[1]
-    left, top, pitch, side = grid[:4].tolist()
-    width, height = columns * pitch - (pitch - side), rows * pitch - (pitch - side)
+    grid = np.frombuffer(place[0])
+    (left, top, pitch), (width, height) = grid[:3].tolist(), size_of(grid, place[1])
     smallest = smallest_cm or SMALLEST_PITCHES * pitch
     largest = largest_cm
     if not math.isfinite(largest):

@@ -67,10 +67,7 @@ class Readings(NamedTuple):
     @property
     def size_cm(self) -> tuple[float, float]:
         """Width and height from the first element's edge to the last one's."""
-        rows, columns = self.states.shape
-        _, _, pitch, side, *_ = self.grid.tolist()
-        gap = pitch - side
-        return columns * pitch - gap, rows * pitch - gap
+        return size_of(self.grid, self.states.shape)
 
     @property
     def shows(self) -> NDArray[np.bool_]:
@@ -199,3 +196,10 @@ def _why(peak: float, least: float) -> str:
             f"is {peak:.3g}: no outline fits"
         )
     return "no element bears a load: no outline fits"
+
+
+def size_of(grid: Values, shape: tuple[int, ...]) -> tuple[float, float]:
+    """Return width and height of a grid of so many rows and columns, between its outer edges."""
+    (rows, columns), (_, _, pitch, side, *_) = shape, grid.tolist()
+    gap = pitch - side
+    return columns * pitch - gap, rows * pitch - gap

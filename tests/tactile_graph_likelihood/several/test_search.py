@@ -7,8 +7,7 @@ from helpers_joint import DISCS, problem_of_discs
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR, unpacked
 from tactile_graph_likelihood.several.joint_posterior import Outlines, gain, log_rest_of
 from tactile_graph_likelihood.several.maximise_jointly import likeliest_of
-from tactile_graph_likelihood.several.pad import laid
-from tactile_graph_likelihood.several.scene import TURNS, Configuration, like
+from tactile_graph_likelihood.several.scene import TURNS, Configuration, laid, like
 from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.element_terms import OFF, ON
 
