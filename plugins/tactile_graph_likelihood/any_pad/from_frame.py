@@ -94,7 +94,7 @@ def strays_beyond(model: Model, readings: Readings, p: Values) -> float:
     """Return the share of strays, by what reads beyond the box around an outline."""
     x, y = p[:2].tolist()
     left, top, pitch, side, *_ = readings.grid.tolist()
-    wide, high = _half_extents(model.kind, p)
+    wide, high = half_extents(model.kind, p)
     rows, columns = lines(y - top, high, pitch, side), lines(x - left, wide, pitch, side)
     inside = readings.states[rows, columns]
     beyond = readings.touched - int(np.count_nonzero((inside == ON) | (inside == OVER)))
@@ -111,14 +111,14 @@ def is_partly_hidden(kind: int, readings: Readings, p: Values) -> bool:
     if kind == DISC:
         return False
     left, top, pitch = readings.grid[:3].tolist()
-    (x, y), (wide, high) = p[:2].tolist(), _half_extents(kind, p)
+    (x, y), (wide, high) = p[:2].tolist(), half_extents(kind, p)
     width, height = readings.size_cm
     room_x = min(x - left, left + width - x) - wide
     room_y = min(y - top, top + height - y) - high
     return bool(min(room_x, room_y) < -0.5 * pitch)
 
 
-def _half_extents(kind: int, p: Values) -> tuple[float, float]:
+def half_extents(kind: int, p: Values) -> tuple[float, float]:
     """Return half the width and height of an outline: no kernel, which would take a second more."""
     if kind == DISC:
         return float(p[2]), float(p[2])

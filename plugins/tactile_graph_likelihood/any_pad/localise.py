@@ -10,7 +10,6 @@ from functools import cached_property
 import numpy as np
 
 from tactile_graph.errors import Degenerate
-from tactile_graph_likelihood.any_pad.clump import clump_of
 from tactile_graph_likelihood.any_pad.from_frame import (
     LAW,
     contrast_of,
@@ -37,6 +36,11 @@ from tactile_graph_likelihood.any_pad.posterior import (
     on_any_pad,
     resized,
     stretched,
+)
+from tactile_graph_likelihood.any_pad.second_climbs import (
+    among_strays,
+    around_few,
+    likelier_elsewhere,
 )
 from tactile_graph_likelihood.any_pad.turn_on import (
     SURE,
@@ -246,10 +250,12 @@ class AnyPad:
 
     def again(self, readings: Readings, even: Likeliest) -> Likeliest:
         """Return what is likelier, near an outline and elsewhere, now that strays are known."""
-        near = self.near(readings, self.told.point_of(even))
-        if readings.states.size > LARGE_PAD and not near.unsure:
+        near, model = self.near(readings, self.told.point_of(even)), self._fit(EVEN)
+        large = readings.states.size > LARGE_PAD
+        if large and not near.unsure:
             return near
-        return self._fit(EVEN).likeliest(readings, near, attempts=MORE)
+        found = model.likeliest(readings, near, attempts=MORE)
+        return found if large else among_strays(model, readings, found)
 
     def completed(self, readings: Readings, even: Likeliest) -> dict[str, Likeliest]:
         """Return the most likely outlines by pressure, once one attempt found one of an even face.
@@ -263,7 +269,7 @@ class AnyPad:
         if even.unsure and not large:
             even = model.likeliest(readings, even, attempts=MORE)
         if readings.touched <= FEW:
-            even = self._by_clump(readings, even)
+            even = around_few(model, readings, even)
         if even.mode.height == -math.inf:
             raise self.told.impossible(readings)
         its = self
@@ -272,6 +278,8 @@ class AnyPad:
             even = its.again(readings, even)
         elif large and even.unsure:
             even = model.likeliest(readings, even, attempts=MORE)
+        if not large:
+            even = likelier_elsewhere(its._fit(EVEN), readings, even)
         found = {EVEN: even}
         hidden = self._reaches_beyond(readings, even)
         least = CLEAR if self.quick else self._faint
@@ -295,17 +303,6 @@ class AnyPad:
         Foam, which makes outlines too large, may be why.
         """
         return is_partly_hidden(self.told.kind, readings, self.told.point_of(top))
-
-    def _by_clump(self, readings: Readings, found: Likeliest) -> Likeliest:
-        """Return a likelier outline around what hangs together, where some elements lie apart."""
-        clump, model = clump_of(readings), self._fit(EVEN)
-        if clump is None:
-            return found
-        begin = model.likeliest(clump)
-        if begin.mode.height == -math.inf:
-            return found
-        near = model.likeliest_near(readings, self.told.point_of(begin))
-        return max(found, near, key=lambda its: its.mode.height)
 
     def _pressed(self, part: str, readings: Readings, even: Likeliest) -> Likeliest:
         n, p = self._count, self.told.point_of(even)
