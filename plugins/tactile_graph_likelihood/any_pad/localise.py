@@ -39,8 +39,8 @@ from tactile_graph_likelihood.any_pad.posterior import (
 )
 from tactile_graph_likelihood.any_pad.second_climbs import (
     among_strays,
-    around_few,
-    likelier_elsewhere,
+    around_clump,
+    beyond_the_edge,
 )
 from tactile_graph_likelihood.any_pad.turn_on import (
     SURE,
@@ -269,7 +269,7 @@ class AnyPad:
         if even.unsure and not large:
             even = model.likeliest(readings, even, attempts=MORE)
         if readings.touched <= FEW:
-            even = around_few(model, readings, even)
+            even = around_clump(model, readings, even)
         if even.mode.height == -math.inf:
             raise self.told.impossible(readings)
         its = self
@@ -279,7 +279,7 @@ class AnyPad:
         elif large and even.unsure:
             even = model.likeliest(readings, even, attempts=MORE)
         if not large:
-            even = likelier_elsewhere(its._fit(EVEN), readings, even)
+            even = beyond_the_edge(its._fit(EVEN), readings, even)
         found = {EVEN: even}
         hidden = self._reaches_beyond(readings, even)
         least = CLEAR if self.quick else self._faint

@@ -1,75 +1,111 @@
-"""Likelier outlines by another climb, from where a frame says that one may have been missed."""
+"""Likelier outlines by another climb, where a frame says that the first may have missed one."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph_likelihood.any_pad.clump import clump_of
-from tactile_graph_likelihood.any_pad.elsewhere import (
-    discs_around,
-    grown_beyond,
-    with_sides_moved,
-    without_lone,
-)
-from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
+from tactile_graph_likelihood.any_pad.from_frame import half_extents
+from tactile_graph_likelihood.geometry.outlines import RECTANGLE, Values, sizes
+from tactile_graph_likelihood.single.element_terms import UNKNOWN
 from tactile_graph_likelihood.single.model import Likeliest, Model
 from tactile_graph_likelihood.single.readings import Readings
 
-BEGUN = 3
-"""Outlines that are climbed from, the likeliest of those that are tried."""
+LONE = 0.4
+"""Touched share of an element and its known neighbours below which that is a stray rather than an
+object's."""
+
+GROWN = 1.3
+"""By how much a round outline is larger that goes on beyond the pad's edge."""
 
 
-def around_few(model: Model, readings: Readings, found: Likeliest) -> Likeliest:
-    """Return a likelier outline of few touched elements.
-
-    Around what hangs together, where some lie apart; or a disc around all that are scattered, most
-    of which reads nothing. By evidence: few elements hold an outline loosely, and a narrow top that
-    is the highest may have the least room.
-    """
-    begins = _that_of(model, clump_of(readings))
-    best = max([found, *_near_each(model, readings, begins)], key=_evidence)
-    if model.kind != DISC or best.mode.height == -math.inf:
-        return best
-    tried = discs_around(readings, model.point_of(best))
-    if tried is None:
-        return best
-    begins = list(model.likeliest_points(readings, tried, BEGUN))
-    return max([best, *_near_each(model, readings, begins)], key=_evidence)
+def around_clump(model: Model, readings: Readings, found: Likeliest) -> Likeliest:
+    """Return a likelier outline around what hangs together, where some elements lie apart."""
+    return _near_that_of(model, readings, clump_of(readings), found)
 
 
 def among_strays(model: Model, readings: Readings, found: Likeliest) -> Likeliest:
     """Return a likelier outline near that of what has touched neighbours."""
-    begins = _that_of(model, without_lone(readings))
-    return max([found, *_near_each(model, readings, begins)], key=_height)
+    return _near_that_of(model, readings, without_lone(readings), found)
 
 
-def likelier_elsewhere(model: Model, readings: Readings, found: Likeliest) -> Likeliest:
-    """Return a likelier outline where it may reach beyond the pad, or where voids hide its ends."""
-    p, begins = model.point_of(found), list[Values]()
-    if model.kind != RECTANGLE:
-        grown = grown_beyond(model.kind, readings, p)
-        begins += [] if grown is None else [grown]
-    elif (tried := with_sides_moved(readings, p)) is not None:
-        begins += list(model.likeliest_points(readings, tried, BEGUN))
-    return max([found, *_near_each(model, readings, begins)], key=_height)
+def beyond_the_edge(model: Model, readings: Readings, found: Likeliest) -> Likeliest:
+    """Return a likelier round outline where one reaches beyond the pad's edge."""
+    if model.kind == RECTANGLE:
+        return found
+    grown = grown_beyond(model.kind, readings, model.point_of(found))
+    return found if grown is None else _likelier(model, readings, grown, found)
 
 
-def _that_of(model: Model, some: Readings | None) -> list[Values]:
-    """Return the most likely outline of some of the readings, if there are any and it is one."""
+def _near_that_of(
+    model: Model, readings: Readings, some: Readings | None, found: Likeliest
+) -> Likeliest:
+    """Return a likelier outline near that of some of the readings."""
     if some is None:
-        return []
+        return found
     its = model.likeliest(some)
-    return [model.point_of(its)] if its.mode.height > -math.inf else []
+    if its.mode.height == -math.inf:
+        return found
+    return _likelier(model, readings, model.point_of(its), found)
 
 
-def _near_each(model: Model, readings: Readings, begins: Iterable[Values]) -> list[Likeliest]:
-    return [model.likeliest_near(readings, begin) for begin in begins]
+def _likelier(model: Model, readings: Readings, begin: Values, found: Likeliest) -> Likeliest:
+    """Return the outline near a point, if it is likelier than what was found."""
+    near = model.likeliest_near(readings, begin)
+    return near if near.mode.height > found.mode.height else found
 
 
-def _height(its: Likeliest) -> float:
-    return its.mode.height
+def without_lone(readings: Readings) -> Readings | None:
+    """Return the readings with touched elements whose neighbours are bare unknown.
+
+    Parameters
+    ----------
+    readings : Readings
+
+    Returns
+    -------
+    Readings or None
+        None where no touched element is like that.
+
+    Notes
+    -----
+    Strays are anywhere, and moments count what is far away most. Of an object nearly all neighbours
+    are touched, too, even where four in ten of its elements read nothing.
+    """
+    shows, known = readings.shows, readings.states != UNKNOWN
+    lone = shows & (_around(shows) < LONE * _around(known))
+    if not lone.any():
+        return None
+    return readings.with_states(np.where(lone, np.uint8(UNKNOWN), readings.states))
 
 
-def _evidence(its: Likeliest) -> float:
-    return its.evidence
+def _around(mask: NDArray[np.bool_]) -> Values:
+    """Return how many of an element and its eight neighbours are in a mask."""
+    wide = np.zeros((mask.shape[0] + 2, mask.shape[1] + 2))
+    wide[1:-1, 1:-1] = mask
+    rows = wide[:-2] + wide[1:-1] + wide[2:]
+    found: Values = rows[:, :-2] + rows[:, 1:-1] + rows[:, 2:]
+    return found
+
+
+def grown_beyond(kind: int, readings: Readings, p: Values) -> Values | None:
+    """Return a round outline larger by what may lie beyond the pad's edge, shape (K,).
+
+    Its rim on the pad stays where it is: of what the edge cuts off the touched elements' moments
+    make a smaller outline. None where it lies on the pad whole.
+    """
+    left, top = readings.grid[:2].tolist()
+    (x, y), (width, height) = p[:2].tolist(), readings.size_cm
+    wide, high = half_extents(kind, p)
+    right = float(x + wide > left + width) - float(x - wide < left)
+    down = float(y + high > top + height) - float(y - high < top)
+    if right == 0.0 and down == 0.0:
+        return None
+    grown, more = p.copy(), (GROWN - 1.0) / math.hypot(right, down)
+    grown[2 : 2 + sizes.call(kind)] *= GROWN
+    grown[0] = min(max(x + more * wide * right, left), left + width)
+    grown[1] = min(max(y + more * high * down, top), top + height)
+    return grown

@@ -39,11 +39,6 @@ def even_points(count: int, unknowns: int, seed: int) -> Values:
     return _mapped(_even(steps, shift, count))
 
 
-def even_places(count: int, axes: int) -> Values:
-    """Return points that fill the unit cube evenly, shape (count, axes)."""
-    return np.asarray((0.5 + np.arange(1, count + 1)[:, None] * np.sqrt(_primes(axes))) % 1.0)
-
-
 def _even(steps: Values, shift: Values, count: int) -> Values:
     """Return half as many even points of the unit cube, shape (count / 2, axes)."""
     even = (shift + np.arange(1, count // 2 + 1)[:, None] * steps) % 1.0

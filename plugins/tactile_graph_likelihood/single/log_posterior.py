@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outline_prior import log_prior
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
@@ -68,14 +66,3 @@ def log_rest(problem: Problem, p: Values) -> float:
         for k in range(first):
             total -= 0.5 * (p[i] - belief[i]) * precision[i, k] * (p[k] - belief[k])
     return total
-
-
-@compiled_as_is
-def log_posteriors(problem: Problem, points: Values) -> Values:
-    """Return the log posterior at each of some points, shape (N, K), up to what all have."""
-    found = np.empty(points.shape[0])
-    for n in range(points.shape[0]):
-        found[n] = log_rest(problem, points[n])
-        if found[n] > -math.inf:
-            found[n] += log_likelihood(problem, points[n])
-    return found

@@ -29,7 +29,7 @@ from tactile_graph_likelihood.single.element_terms import LEAST, OFF, ON, States
 from tactile_graph_likelihood.single.even_points import even_points
 from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.importance import normal_points, weighted_moments
-from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI, log_posteriors
+from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.noise import Noise, NoiseTaken
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -179,12 +179,6 @@ class Model:
         problem = self._problem(readings)
         attempt = 0 if readings.states.size > LARGE_PAD else NEAR
         return self._find(problem, self._begin(point, problem), [attempt])
-
-    def likeliest_points(self, readings: Readings, points: Values, most: int) -> Values:
-        """Return the likeliest of some points in the outline's own numbers, shape (most, K)."""
-        problem = self._problem(readings)
-        logs = log_posteriors.call(problem, points)
-        return points[np.argsort(-logs, kind="stable")[:most]]
 
     def _find(
         self,

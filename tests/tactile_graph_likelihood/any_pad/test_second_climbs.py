@@ -1,0 +1,138 @@
+"""What one climb misses, the second finds: likelier outlines, and nearer to the truth."""
+
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tactile_graph_likelihood.any_pad import localise
+from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse, LocateRectangle
+from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.any_pad.second_climbs import grown_beyond, without_lone
+from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE
+from tactile_graph_likelihood.single.any_pressure import EVEN
+from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN
+from tactile_graph_likelihood.single.readings import Readings
+
+sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
+from second_simulator import KINDS, Bench
+
+PITCH, SIDE, N = 1.3, 1.0, 12
+GRID = np.array([0.0, 0.0, PITCH, SIDE, 0.0, 0.0])
+WIDE = N * PITCH - (PITCH - SIDE)
+
+
+def readings(*touched, unknown=()):
+    states = np.full((N, N), OFF, np.uint8)
+    for place in touched:
+        states[place] = ON
+    for place in unknown:
+        states[place] = UNKNOWN
+    return Readings(GRID, np.zeros((N, N)), states, len(touched))
+
+
+BLOCK = [(i, j) for i in range(3, 7) for j in range(3, 7)]
+
+
+def test_what_has_no_touched_neighbour_says_nothing():
+    found = without_lone(readings(*BLOCK, (0, 0), (10, 3), (10, 4)))
+    assert found.touched == len(BLOCK)
+    assert {tuple(map(int, p)) for p in np.argwhere(found.states == UNKNOWN)} == {
+        (0, 0), (10, 3), (10, 4)
+    }  # fmt: skip
+    assert without_lone(readings(*BLOCK)) is None
+
+
+def test_an_element_between_broken_ones_is_not_lone():
+    broken = [(i, j) for i in (4, 5, 6) for j in (4, 5, 6) if (i, j) != (5, 5)]
+    assert without_lone(readings((5, 5), unknown=broken)) is None
+    assert without_lone(readings((5, 5))).touched == 0
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "toward"),
+    [
+        (WIDE - 1.0, 8.0, (1, 0)),
+        (1.0, 8.0, (-1, 0)),
+        (8.0, WIDE - 1.0, (0, 1)),
+        (8.0, 1.0, (0, -1)),
+    ],
+)
+def test_a_disc_that_is_cut_off_grows_beyond_the_edge_and_keeps_its_rim_on_the_pad(x, y, toward):
+    p = np.array([x, y, 2.0, 3.0, 0.0, 0.0])
+    found = grown_beyond(DISC, readings(*BLOCK), p)
+    assert found[2] > p[2]
+    for far in (0, 1):  # the rim opposite to the edge
+        assert (
+            found[far] - toward[far] * found[2] == pytest.approx(p[far] - toward[far] * p[2])
+            or not toward[far]
+        )
+    assert list(found[3:]) == list(p[3:])
+
+
+def test_the_centre_of_what_grows_stays_on_the_pad():
+    found = grown_beyond(DISC, readings(*BLOCK), np.array([WIDE - 0.1, WIDE - 0.1, 4.0, 0.0]))
+    assert (found[:2] == pytest.approx([WIDE, WIDE])) is True
+
+
+def test_an_ellipse_grows_along_both_axes_and_what_lies_whole_does_not():
+    p = np.array([WIDE - 1.0, 8.0, 3.0, 2.0, 0.3, 1.0])
+    found = grown_beyond(ELLIPSE, readings(*BLOCK), p)
+    assert found[2] / found[3] == pytest.approx(1.5)
+    assert found[4] == p[4]
+    assert grown_beyond(DISC, readings(*BLOCK), np.array([8.0, 8.0, 3.0, 1.0])) is None
+
+
+def many(test):
+    """Mark a test that looks at many frames."""
+    return pytest.mark.slow(pytest.mark.usefixtures("warm_kernels")(test))
+
+
+MISSED = 3.0
+"""Nats by which another outline is likelier than the one that was found."""
+
+STEPS = {"disc": LocateDisc(), "ellipse": LocateEllipse(), "rectangle": LocateRectangle()}
+
+
+def searched(kind, shape, pads):
+    """Return the likeliest outlines' log evidence, and the centre's error of the answers."""
+    step, rows = STEPS[shape], []
+    for seed in range(pads):
+        bench = Bench(KINDS[kind], np.random.default_rng(seed))
+        for frame in bench.frames(3, "rectangle" if shape == "rectangle" else "disc"):
+            true = frame.truth[0].shape
+            readings, even = step._any_pad.first(observed(frame.image, step._pad, None))
+            tops = step._any_pad.completed(readings, even)
+            x, y = step._any_pad.around(readings, tops).mean[:2]
+            rows.append((tops[EVEN].evidence, math.hypot(x - true.x_cm, y - true.y_cm)))
+    return np.array(rows).T
+
+
+@many
+@pytest.mark.parametrize(
+    ("kind", "shape", "pads", "least", "ratio"),
+    [
+        ("over the edge", "disc", 20, 5, 0.85),
+        ("over the edge", "ellipse", 40, 5, 0.98),
+    ],
+)
+def test_what_the_edge_cuts_off_is_looked_for_beyond_it(
+    kind, shape, pads, least, ratio, monkeypatch
+):
+    evidence, off = searched(kind, shape, pads)
+    monkeypatch.setattr(localise, "beyond_the_edge", lambda model, readings, found: found)
+    evidence_before, off_before = searched(kind, shape, pads)
+    assert (evidence > evidence_before + MISSED).sum() >= least
+    assert (evidence > evidence_before - MISSED).all()
+    assert off.mean() < ratio * off_before.mean()
+
+
+@many
+def test_among_strays_a_rectangle_is_looked_for_without_what_stands_alone(monkeypatch):
+    _, off = searched("strays 4 %", "rectangle", 20)
+    monkeypatch.setattr(localise, "among_strays", lambda model, readings, found: found)
+    _, off_before = searched("strays 4 %", "rectangle", 20)
+    assert off.mean() < 0.9 * off_before.mean()
+    assert np.quantile(off, 0.95) < 0.9 * np.quantile(off_before, 0.95)
