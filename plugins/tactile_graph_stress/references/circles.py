@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from tactile_graph_stress.references.stationary import Fit, Vector
+from tactile_graph_stress.references.stationary import Fit, Vector, products, times
 
 Points = Sequence[tuple[Any, Any]]
 
@@ -33,13 +33,38 @@ def _constrained(hyper: bool) -> Callable[[Vector, Any, Any, int], Vector]:
         z = x * x + y * y
         off = z + b * x + c * y + d
         if hyper:
-            bound = (8 * z + 4 * (x * b + y * c) + 2 * d, 4 * x + b, 4 * y + c, 2)
+            bound = (8 * z + 4 * (x * b + y * c) + 2 * d, 4 * x + b, 4 * y + c)
         else:
-            bound = (4 * z + 2 * (x * b + y * c), 2 * x + b, 2 * y + c, 0)
-        rows = (z, x, y, 1)
-        return [off * row - eta * limit for row, limit in zip(rows, bound, strict=True)]
+            bound = (4 * z + 2 * (x * b + y * c), 2 * x + b, 2 * y + c)
+        rows = [off * row - eta * limit for row, limit in zip((z, x, y), bound, strict=True)]
+        return [*rows, off - 2 * eta if hyper else off]
 
     return term
+
+
+def _kasa_summed(points: Points) -> Callable[[Vector], Vector]:
+    sums = products([[x * x + y * y, x, y, 1] for x, y in points])[1:]
+    return lambda a: times(sums, [1, *a])
+
+
+def _constrained_summed(hyper: bool) -> Callable[[Points], Callable[[Vector], Vector]]:
+    def summed(points: Points) -> Callable[[Vector], Vector]:
+        sums, n = products([[x * x + y * y, x, y, 1] for x, y in points]), len(points)
+        z, x, y, _ = sums[3]
+
+        def total(a: Vector) -> Vector:
+            b, c, d, eta = a
+            if hyper:
+                middle = 8 * z + 4 * (x * b + y * c) + 2 * n * d
+                bound = [middle, 4 * x + n * b, 4 * y + n * c, 2 * n]
+            else:
+                bound = [4 * z + 2 * (x * b + y * c), 2 * x + n * b, 2 * y + n * c, 0]
+            found = times(sums, [1, b, c, d])
+            return [one - eta * limit for one, limit in zip(found, bound, strict=True)]
+
+        return total
+
+    return summed
 
 
 def _of_conic(a: Vector) -> Vector:
@@ -80,6 +105,7 @@ def _powers(a: Vector, points: Points) -> Any:
 
 
 GEOMETRIC = Fit(_geometric, list, lambda shape, points: list(shape), _distances)
-KASA = Fit(_kasa, _of_conic, _as_conic, _powers)
-TAUBIN = Fit(_constrained(False), _of_conic, _with_eta, _eta)
-HYPER = Fit(_constrained(True), _of_conic, _with_eta, _eta)
+KASA = Fit(_kasa, _of_conic, _as_conic, _powers, summed=_kasa_summed)
+TAUBIN = Fit(_constrained(False), _of_conic, _with_eta, _eta,
+             summed=_constrained_summed(False))  # fmt: skip
+HYPER = Fit(_constrained(True), _of_conic, _with_eta, _eta, summed=_constrained_summed(True))

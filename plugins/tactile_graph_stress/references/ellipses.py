@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from tactile_graph_stress.references.stationary import Fit, Vector
+from tactile_graph_stress.references.stationary import Fit, Vector, products, times
 
 Points = Sequence[tuple[Any, Any]]
+SETTLED = 1e-55
+"""A step of Newton's method after which 100 digits are right: each step doubles them."""
 
 
 def _geometric(p: Vector, x: Any, y: Any, n: int) -> Vector:
@@ -32,16 +34,26 @@ def _foot(a: Any, b: Any, u: Any, v: Any) -> Any:
     starts = [math.atan2(fv / fb, fu / fa), math.atan2(fv * fa, fu * fb)]
     starts += [k * math.pi / 8 for k in range(16)]
     best = min(starts, key=lambda t: math.hypot(fu - fa * math.cos(t), fv - fb * math.sin(t)))
-    t = mpf(best)
+    for _ in range(60):
+        step = _step(fa * fu, fb * fv, fa * fa - fb * fb, math.cos(best), math.sin(best), 0.01)
+        best -= step
+        if abs(step) < 1e-14:
+            break
+    t, au, bv, far = mpf(best), a * u, b * v, a * a - b * b
     for _ in range(60):
         c, s = cos_sin(t)
-        slope = a * u * s - b * v * c - (a * a - b * b) * s * c
-        bend = a * u * c + b * v * s - (a * a - b * b) * (c * c - s * s)
-        step = slope / bend if bend > 0 else mpf(1) / 100
+        step = _step(au, bv, far, c, s, mpf(1) / 100)
         t -= step
-        if abs(step) < 1e-95:
+        if abs(step) < SETTLED:
             break
     return t
+
+
+def _step(au: Any, bv: Any, far: Any, c: Any, s: Any, otherwise: Any) -> Any:
+    """Return a step of Newton's method to the nearest point; another where that is no minimum."""
+    slope = au * s - bv * c - far * s * c
+    bend = au * c + bv * s - far * (c * c - s * s)
+    return slope / bend if bend > 0 else otherwise
 
 
 def _direct(p: Vector, x: Any, y: Any, n: int) -> Vector:
@@ -52,6 +64,18 @@ def _direct(p: Vector, x: Any, y: Any, n: int) -> Vector:
     share = eta / n
     bound = (2 * c * share, -b * share, 2 * a * share, 0, 0, 0)
     return [*(off * w[k] - bound[k] for k in range(6)), (a + c - 1) / n]
+
+
+def _direct_summed(points: Points) -> Callable[[Vector], Vector]:
+    sums = products([[x * x, x * y, y * y, x, y, 1] for x, y in points])
+
+    def total(p: Vector) -> Vector:
+        a, b, c, _, _, _, eta = p
+        bound = [2 * c * eta, -b * eta, 2 * a * eta, 0, 0, 0]
+        found = times(sums, p[:6])
+        return [*(one - limit for one, limit in zip(found, bound, strict=True)), a + c - 1]
+
+    return total
 
 
 def _of_conic(p: Vector) -> Vector:
@@ -89,4 +113,4 @@ def _only(p: Vector, points: Points) -> int:
 
 
 GEOMETRIC = Fit(_geometric, list, lambda shape, points: list(shape), _only, angled=True)
-DIRECT = Fit(_direct, _of_conic, _as_conic, _only, angled=True)
+DIRECT = Fit(_direct, _of_conic, _as_conic, _only, angled=True, summed=_direct_summed)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph_stress.references import circles, ellipses
 from tactile_graph_stress.references.axis import main_axis
-from tactile_graph_stress.references.stationary import Fit, Solved, solve
+from tactile_graph_stress.references.stationary import Fit, Solved, shape_of, solve
 
 Values = NDArray[np.float64]
 
@@ -52,18 +52,20 @@ def _circle(fits: tuple[Fit, ...], xy: Values, value: Any) -> Solved | None:
     middle = xy.mean(axis=0) if np.abs(xy).max() < 1e150 else xy[0]
     start: list[Any] = [*middle.tolist(), 1.0]
     mine = parts_of(value)
-    found: Solved | None = None
+    starts: list[list[Any]] = []
     for fit in fits:
-        found = solve(fit, xy, [start])
+        starts = [start]
+        found = shape_of(fit, xy, starts)
         if found is None or not _near(found, mine):  # there are other roots: which is best?
-            found = solve(fit, xy, [start, mine])
+            starts = [start, mine]
+            found = shape_of(fit, xy, starts)
         if found is None:
             return None
-        start = found.shape
-    return found
+        start = found
+    return solve(fits[-1], xy, starts)
 
 
-def _near(found: Solved, mine: list[float]) -> bool:
+def _near(found: list[Any], mine: list[float]) -> bool:
     """Return whether two circles differ by no more than a millionth of their radius."""
-    pairs = zip(found.shape, mine, strict=True)
-    return bool(max(abs(a - b) for a, b in pairs) <= 1e-6 * abs(found.shape[2]))
+    pairs = zip(found, mine, strict=True)
+    return bool(max(abs(a - b) for a, b in pairs) <= 1e-6 * abs(found[2]))

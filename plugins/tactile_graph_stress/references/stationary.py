@@ -39,6 +39,9 @@ class Fit:
         ``cost(a, points)`` gives what is least at the answer: there are other roots.
     angled : bool
         Whether the last part of the shape is an angle.
+    summed : callable, optional
+        ``summed(points)`` gives what gives the equations of unknowns, where sums over the points
+        that hang on no unknown are taken once.
     """
 
     term: Callable[[Vector, Any, Any, int], Vector]
@@ -46,6 +49,7 @@ class Fit:
     start: Callable[[Vector, Sequence[tuple[Any, Any]]], Vector]
     cost: Callable[[Vector, Sequence[tuple[Any, Any]]], Any]
     angled: bool = False
+    summed: Callable[[Sequence[tuple[Any, Any]]], Callable[[Vector], Vector]] | None = None
 
 
 class Solved(NamedTuple):
@@ -83,15 +87,35 @@ def solve(fit: Fit, xy: NDArray[np.float64], starts: Sequence[Vector]) -> Solved
 
     points_cm = np.asarray(xy, dtype=np.float64).tobytes()
     with mp.workdps(DIGITS):
+        a = _best(fit, points_cm, starts)
         framed = _points(points_cm)
-        if framed is None:
-            return None
-        found = [_rooted(fit, points_cm, tuple(start)) for start in starts]
-        roots = [root for root in found if root is not None]
-        if not roots:
-            return None
-        points, x0, y0, unit = framed
-        return _answer(fit, points, min(roots, key=lambda r: r[0])[1], x0, y0, unit)
+        return None if a is None or framed is None else _answer(fit, *framed, a)
+
+
+def shape_of(fit: Fit, xy: NDArray[np.float64], starts: Sequence[Vector]) -> Vector | None:
+    """Return the shape alone of what `solve` returns, in less time.
+
+    Parameters
+    ----------
+    fit, xy, starts
+        As of `solve`.
+    """
+    from mpmath import mp
+
+    points_cm = np.asarray(xy, dtype=np.float64).tobytes()
+    with mp.workdps(DIGITS):
+        a = _best(fit, points_cm, starts)
+        framed = _points(points_cm)
+        return None if a is None or framed is None else _placed(fit, fit.shape(a), *framed[1:])
+
+
+def _best(fit: Fit, points_cm: bytes, starts: Sequence[Vector]) -> Vector | None:
+    """Return the unknowns of the best answer that the starts lead to."""
+    if _points(points_cm) is None:
+        return None
+    found = [_rooted(fit, points_cm, tuple(start)) for start in starts]
+    roots = [root for root in found if root is not None]
+    return min(roots, key=lambda r: r[0])[1] if roots else None
 
 
 @lru_cache(maxsize=64)
@@ -132,10 +156,33 @@ def _framed(fit: Fit, shape: Vector, x0: Any, y0: Any, unit: Any) -> Vector:
     return [(shape[0] - x0) / unit, (shape[1] - y0) / unit, *middle, *shape[last:]]
 
 
-def _total(fit: Fit, points: Sequence[tuple[Any, Any]], a: Vector) -> Vector:
+def _placed(fit: Fit, shape: Vector, x0: Any, y0: Any, unit: Any) -> Vector:
+    last = len(shape) - 1 if fit.angled else len(shape)
+    placed = [shape[0] * unit + x0, shape[1] * unit + y0, *(v * unit for v in shape[2:last])]
+    return [*placed, *shape[last:]]
+
+
+def _equations(fit: Fit, points: Sequence[tuple[Any, Any]]) -> Callable[[Vector], Vector]:
+    if fit.summed is not None:
+        return fit.summed(points)
     n = len(points)
-    parts = [fit.term(a, x, y, n) for x, y in points]
-    return [sum(column) for column in zip(*parts, strict=True)]
+
+    def total(a: Vector) -> Vector:
+        parts = [fit.term(a, x, y, n) for x, y in points]
+        return [sum(column) for column in zip(*parts, strict=True)]
+
+    return total
+
+
+def products(rows: Sequence[Vector]) -> list[Vector]:
+    """Return the sums of all products of two numbers of a row."""
+    size = range(len(rows[0]))
+    return [[sum(row[i] * row[k] for row in rows) for k in size] for i in size]
+
+
+def times(square: Sequence[Vector], a: Sequence[Any]) -> Vector:
+    """Return a matrix times numbers."""
+    return [sum(v * number for v, number in zip(row, a, strict=True)) for row in square]
 
 
 def _slopes(of: Callable[[Vector], Vector], a: Vector) -> tuple[Vector, Any]:
@@ -156,9 +203,9 @@ def _root(fit: Fit, points: Sequence[tuple[Any, Any]], a: Vector) -> Vector | No
     """Return the unknowns at which the equations hold, by damped steps of Newton's method."""
     from mpmath import lu_solve, matrix, norm
 
-    before = None
+    before, equations = None, _equations(fit, points)
     for _ in range(ROUNDS):
-        value, slopes = _slopes(lambda v: _total(fit, points, v), a)
+        value, slopes = _slopes(equations, a)
         step = lu_solve(slopes, matrix(value))
         size, extent = norm(step), norm(matrix(a))
         if size > extent:  # far away: no more than as far as everything is large
@@ -173,12 +220,12 @@ def _root(fit: Fit, points: Sequence[tuple[Any, Any]], a: Vector) -> Vector | No
 
 
 def _answer(
-    fit: Fit, points: Sequence[tuple[Any, Any]], a: Vector, x0: Any, y0: Any, unit: Any
+    fit: Fit, points: Sequence[tuple[Any, Any]], x0: Any, y0: Any, unit: Any, a: Vector
 ) -> Solved:
     from mpmath import lu_solve, matrix, mpf
 
     n = len(points)
-    _, by_unknown = _slopes(lambda v: _total(fit, points, v), a)
+    _, by_unknown = _slopes(_equations(fit, points), a)
     shape, by_shape = _slopes(fit.shape, a)
     columns = matrix(len(a), 2 * n)
     h = mpf(STEP)
@@ -192,9 +239,7 @@ def _answer(
     total = by_shape * inverse * columns
     for row in range(len(shape)):
         moves[row] = float(sum(abs(total[row, k]) for k in range(2 * n)))
-    last = len(shape) - 1 if fit.angled else len(shape)
-    placed = [shape[0] * unit + x0, shape[1] * unit + y0, *(v * unit for v in shape[2:last])]
-    return Solved([*placed, *shape[last:]], moves, unit, fit.angled)
+    return Solved(_placed(fit, shape, x0, y0, unit), moves, unit, fit.angled)
 
 
 def _inverse(square: Any, lu_solve: Any) -> Any:

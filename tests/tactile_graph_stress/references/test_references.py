@@ -36,6 +36,19 @@ def test_points_on_an_ellipse_give_it_to_50_digits(fit):
         assert max(off) < mpf(10) ** -49
 
 
+@pytest.mark.parametrize("fit", [circles.KASA, circles.TAUBIN, circles.HYPER, ellipses.DIRECT])
+def test_sums_taken_once_give_the_equations_that_each_point_has_a_part_of(fit):
+    n_unknowns = {circles.KASA: 3, ellipses.DIRECT: 7}.get(fit, 4)
+    with mp.workdps(60):
+        points = [(mpf(x), mpf(y)) for x, y in OFF.tolist()]
+        a = [mpf(k + 2) / 7 for k in range(n_unknowns)]
+        parts = [fit.term(a, x, y, len(points)) for x, y in points]
+        expected = [sum(column) for column in zip(*parts, strict=True)]
+        found = fit.summed(points)(a)
+        assert max(abs(p - q) for p, q in zip(found, expected, strict=True)) < mpf(10) ** -54
+    assert all(expected)
+
+
 def test_kasa_is_what_fractions_give():
     rows = [(Fraction(x), Fraction(y), Fraction(1)) for x, y in OFF.tolist()]
     right = [-(x * x + y * y) for x, y, _ in rows]
