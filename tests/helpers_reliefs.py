@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 
@@ -13,8 +14,8 @@ from tactile_graph_classifiers.commands.learn import image_of
 from tactile_graph_classifiers.database.rows import Lesson, Setting
 from tactile_graph_classifiers.database.store import ObjectDatabase
 from tactile_graph_classifiers.measuring.reader import Given, Reader
+from tactile_graph_classifiers.reliefs import of_database
 from tactile_graph_classifiers.reliefs.kernels import NODES
-from tactile_graph_classifiers.reliefs.of_database import learned_of
 from tactile_graph_classifiers.reliefs.pad_reading import Law, PadReading
 from tactile_graph_classifiers.reliefs.presses import Presses
 from tactile_graph_classifiers.reliefs.relief import Relief
@@ -61,8 +62,13 @@ def pressed_on_a_strip(things: list[Thing], n: int, seed: int) -> list[np.ndarra
     return [np.array([pad.press(t).image.values for _ in range(n)], float) for t in things]
 
 
-def learned_with_reliefs(path: Path, pressed: Mapping[str, Sequence[Frame]]) -> Path:
-    """Learn objects of their frames, with their reliefs, and return the database's path."""
+def learned_with_reliefs(
+    path: Path, pressed: Mapping[str, Sequence[Frame]], law: Law = STRIP_LAW
+) -> Path:
+    """Learn objects of their frames, with their reliefs, and return the database's path.
+
+    The pad's law is told, as to choose one takes longer than all else.
+    """
     pipeline = load("describe")
     reader = Reader(Given(pipeline, "features", 0, image_of(pipeline, "features", ())))
     store = ObjectDatabase(path)
@@ -74,5 +80,7 @@ def learned_with_reliefs(path: Path, pressed: Mapping[str, Sequence[Frame]]) -> 
         lesson = Lesson(name, "", rows, found.sources)
         store.learn(setting, [lesson], presses={name: found.presses})
     known, images = store.presses()
-    store.keep_reliefs(learned_of(known, images, lambda _: None).kept(), known)
+    with patch.object(of_database, "chosen_law", lambda presses, say: law):
+        found = of_database.learned_of(known, images, lambda _: None)
+    store.keep_reliefs(found.kept(), known)
     return store.path

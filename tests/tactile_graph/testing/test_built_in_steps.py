@@ -15,6 +15,8 @@ from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.signature import Kind
 from tactile_graph.testing import examine_step, isolated
 from tactile_graph.testing.cases import PITCH_CM, SHAPE
+from tactile_graph_classifiers.reliefs.choosing_law import BEGIN
+from tactile_graph_classifiers.reliefs.of_database import FEWEST
 from tactile_graph_pads.learned import Elements, write_elements
 from tactile_graph_pads.learning.patch import N_PLACE, PatchKind
 from tactile_graph_pads.learning.place import PlaceCorrection, write_place
@@ -115,11 +117,11 @@ def test_a_step_of_reliefs_does(name: str, tmp_path: Path) -> None:
     rng = np.random.default_rng(5)
 
     def frames(radius_cells: float) -> list[Frame]:
-        places = rng.uniform((2.6, 2.6), (5.4, 6.4), (15, 2))
+        places = rng.uniform((2.6, 2.6), (5.4, 6.4), (FEWEST, 2))
         return [soft_disc(row, column, radius_cells, rng) for row, column in places]
 
     path = tmp_path / "objects.sqlite"
-    learned_with_reliefs(path, {"small": frames(1.5), "large": frames(2.4)})
+    learned_with_reliefs(path, {"small": frames(1.5), "large": frames(2.4)}, BEGIN)
     report = examine_step(name, settings={"database": str(path)})
     assert (report.untried, report.lines()) == ("", [])
     assert report.n_values

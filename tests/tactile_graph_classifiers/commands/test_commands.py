@@ -285,7 +285,7 @@ def test_reliefs_are_learned_of_presses_that_were_kept(recordings):
 @pytest.mark.slow  # reliefs are learned
 def test_objects_are_identified_by_their_reliefs(recordings):
     for name in ("small", "large"):
-        assert call("learn", name, recordings[name], "--keep-presses")[0] == 0
+        assert call("learn", name, recordings[name], "--keep-presses", "--frames", 8)[0] == 0
     code, text = call("learn-reliefs")
     assert code == 0, text
     assert "reliefs of 2 objects learned" in text
