@@ -13,12 +13,14 @@ from hypothesis import strategies as st
 
 from helpers_graphs import CALLS, NAIVE, STEPS, cases, frame, registry, shown
 from helpers_naive import Naive, Outcome
-from tactile_graph import Frame, loads
-from tactile_graph.engine.deadlines.options import Decider, Option, Options
+from tactile_graph import Frame, Pipeline, loads
+from tactile_graph.engine.deadlines.options import Option, Options
 from tactile_graph.engine.outcomes.outcome import Failed, Skipped, gaps
 from tactile_graph.live import Recorded
 
 UNHEALTHY = [HealthCheck.too_slow, HealthCheck.data_too_large]
+Case = tuple[dict[str, Any], dict[str, Any]]
+"""A pipeline and the library it may use."""
 FRAMES = [(0, 0.0), (3, 0.5), (4, 0.6), (5, 2.0), (1, 2.25), (2, 4.0)]
 
 
@@ -36,57 +38,6 @@ def seen(outcome: Any) -> Outcome:
         items = [seen(item) for item in outcome]
         return Outcome("value", tuple(i.value if i.has_value else i for i in items))
     return Outcome("value", outcome)
-
-
-def exactly_as_the_naive_evaluator(
-    case: tuple[dict[str, Any], dict[str, Any]], folder: Path, decider: Decider | None = None
-) -> None:
-    document, library = case
-    files = {name: folder / f"{name}.yaml" for name in library}
-    for name, path in files.items():
-        path.write_text(shown(library[name]))
-    pipeline = loads(shown(document), "random.yaml", registry(STEPS, files))
-    naive = Naive(document, library, NAIVE)
-    runner = pipeline.runner(decider=decider)
-    asked = document["outputs"]
-    for index, (number, time_s) in enumerate(FRAMES):
-        one = frame(number, index, time_s)
-        CALLS.clear()
-        expected = naive.run(one, asked)
-        result = runner(one)
-        assert not result.reused
-        got = {name: seen(result.outcome(name)) for name in asked}
-        assert got == expected
-        assert Counter(CALLS) == naive.ran
-
-
-@pytest.mark.parametrize("n_cases", [60, pytest.param(400, marks=pytest.mark.slow)])
-def test_plans_equal_a_naive_evaluator_and_run_only_what_is_needed(
-    n_cases: int, folder: Path
-) -> None:
-    @settings(
-        max_examples=n_cases,
-        deadline=None,
-        derandomize=True,
-        suppress_health_check=UNHEALTHY,
-    )
-    @given(case=cases())
-    def equal(case: tuple[dict[str, Any], dict[str, Any]]) -> None:
-        exactly_as_the_naive_evaluator(case, folder)
-
-    equal()
-
-
-@pytest.mark.slow
-def test_plans_that_could_leave_something_undone_come_to_the_same_where_nothing_is(
-    folder: Path,
-) -> None:
-    @settings(max_examples=200, deadline=None, derandomize=True, suppress_health_check=UNHEALTHY)
-    @given(case=cases())
-    def equal(case: tuple[dict[str, Any], dict[str, Any]]) -> None:
-        exactly_as_the_naive_evaluator(case, folder, Recorded())
-
-    equal()
 
 
 class Whim:
@@ -107,33 +58,72 @@ class Whim:
     def end(self) -> None: ...
 
 
-@pytest.mark.slow
-def test_whatever_was_decided_comes_to_the_same_again(folder: Path) -> None:
+def loaded(case: Case, folder: Path) -> Pipeline:
+    document, library = case
+    files = {name: folder / f"{name}.yaml" for name in library}
+    for name, path in files.items():
+        path.write_text(shown(library[name]))
+    return loads(shown(document), "random.yaml", registry(STEPS, files))
+
+
+def exactly_as_the_naive_evaluator(case: Case, pipeline: Pipeline) -> None:
+    """Look at a plan, and at one that could leave something undone where nothing is."""
+    document, library = case
+    naive = Naive(document, library, NAIVE)
+    runners = [pipeline.runner(), pipeline.runner(decider=Recorded())]
+    asked = document["outputs"]
+    for index, (number, time_s) in enumerate(FRAMES):
+        one = frame(number, index, time_s)
+        CALLS.clear()
+        expected = naive.run(one, asked)
+        for runner in runners:
+            CALLS.clear()
+            result = runner(one)
+            assert not result.reused
+            got = {name: seen(result.outcome(name)) for name in asked}
+            assert got == expected
+            assert Counter(CALLS) == naive.ran
+
+
+def what_was_decided_comes_to_the_same_again(pipeline: Pipeline, seed: int) -> int:
+    """Decide at random, and once more as was decided; return how often."""
+    n_decisions = 0
+    recorded = Recorded()
+    runner, again = pipeline.runner(decider=Whim(seed)), pipeline.runner(decider=recorded)
+    for index, (number, time_s) in enumerate(FRAMES):
+        one = frame(number, index, time_s)
+        CALLS.clear()
+        result, calls = runner(one), CALLS.copy()
+        recorded.skipped = result.decisions
+        n_decisions += len(result.decisions)
+        CALLS.clear()
+        assert repr(again(one).outcomes) == repr(result.outcomes)
+        assert calls == CALLS
+    return n_decisions
+
+
+@pytest.mark.parametrize("n_cases", [60, pytest.param(400, marks=pytest.mark.slow)])
+def test_plans_equal_a_naive_evaluator_run_only_what_is_needed_and_decide_the_same_again(
+    n_cases: int, folder: Path
+) -> None:
+    """All of one test, as to draw a pipeline and to load it takes longer than to run it."""
     n_decisions = 0
 
-    @settings(max_examples=300, deadline=None, derandomize=True, suppress_health_check=UNHEALTHY)
+    @settings(
+        max_examples=n_cases,
+        deadline=None,
+        derandomize=True,
+        suppress_health_check=UNHEALTHY,
+    )
     @given(case=cases(), seed=st.integers(0, 2**32))
-    def equal(case: tuple[dict[str, Any], dict[str, Any]], seed: int) -> None:
+    def equal(case: Case, seed: int) -> None:
         nonlocal n_decisions
-        document, library = case
-        files = {name: folder / f"{name}.yaml" for name in library}
-        for name, path in files.items():
-            path.write_text(shown(library[name]))
-        pipeline = loads(shown(document), "random.yaml", registry(STEPS, files))
-        recorded = Recorded()
-        runner, again = pipeline.runner(decider=Whim(seed)), pipeline.runner(decider=recorded)
-        for index, (number, time_s) in enumerate(FRAMES):
-            one = frame(number, index, time_s)
-            CALLS.clear()
-            result, calls = runner(one), CALLS.copy()
-            recorded.skipped = result.decisions
-            n_decisions += len(result.decisions)
-            CALLS.clear()
-            assert repr(again(one).outcomes) == repr(result.outcomes)
-            assert calls == CALLS
+        pipeline = loaded(case, folder)
+        exactly_as_the_naive_evaluator(case, pipeline)
+        n_decisions += what_was_decided_comes_to_the_same_again(pipeline, seed)
 
     equal()
-    assert n_decisions > 1000
+    assert n_decisions > 3 * n_cases
 
 
 LISTS = {
@@ -152,7 +142,7 @@ LISTS = {
 def test_lists_of_which_items_fail_or_are_skipped_equal_a_naive_evaluator(folder: Path) -> None:
     nodes = {n: {**body, "with": {"tag": n}} for n, body in LISTS.items()}
     document = {"pipeline": "p", "conditions": {}, "nodes": nodes, "outputs": [*LISTS]}
-    exactly_as_the_naive_evaluator((document, {}), folder)
+    exactly_as_the_naive_evaluator((document, {}), loaded((document, {}), folder))
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tactile_graph.wires import Circle, Frame, TrueObject
-from tactile_graph_pads.learning.learn import learn_pad
+from tactile_graph_pads.learning.learn import LearnedPad, learn_pad
 from tactile_graph_pads.learning.pad_file import Making, pad_text, write_pad
 from tactile_graph_pads.learning.recordings import Stack, read_stack
 from tactile_graph_pads.pad import Pad, load_pad
@@ -47,10 +47,15 @@ def stacks(
     return read_stack([(folder / "empty.npz", None)]), read_stack([(folder / "discs.npz", None)])
 
 
+@pytest.fixture(scope="module")
+def even(tmp_path_factory: pytest.TempPathFactory) -> LearnedPad:
+    """Return what is learned of the even pad by itself."""
+    return learn_pad(*stacks(tmp_path_factory.mktemp("even")))
+
+
 @pytest.mark.slow
-def test_noise_goes_where_localisers_look_for_it(tmp_path: Path) -> None:
-    found = learn_pad(*stacks(tmp_path))
-    paths = write_pad(tmp_path / "pad.yaml", found, None, MAKING)
+def test_noise_goes_where_localisers_look_for_it(even: LearnedPad, tmp_path: Path) -> None:
+    paths = write_pad(tmp_path / "pad.yaml", even, None, MAKING)
     assert [p.name for p in paths[:2]] == ["pad.yaml", "pad.elements.csv"]
     pad = load_pad(tmp_path / "pad.yaml")
     assert pad.scan.noise_v == pytest.approx(NOISE_V, rel=0.05)
@@ -77,22 +82,20 @@ def test_with_a_pad_told_gains_turn_on_and_unevenness_are_of_grams(tmp_path: Pat
 
 
 @pytest.mark.slow
-def test_the_head_says_what_was_told_and_what_was_not(tmp_path: Path) -> None:
-    found = learn_pad(*stacks(tmp_path))
-    alone = pad_text(found, None, MAKING)
+def test_the_head_says_what_was_told_and_what_was_not(even: LearnedPad) -> None:
+    alone = pad_text(even, None, MAKING)
     assert "Told beforehand: no pad." in alone
     assert "Nobody said its law and circuit: a step that asks for them takes the thesis'." in alone
     assert "SHA-256 of x.npz: abababababababab…" in alone
-    told = pad_text(found, PLAIN, replace(MAKING, pad="plain"))
+    told = pad_text(even, PLAIN, replace(MAKING, pad="plain"))
     assert "Told beforehand: plain." in told
     assert "Nobody said" not in told
 
 
 @pytest.mark.slow
-def test_many_recordings_are_named_by_one_digest(tmp_path: Path) -> None:
-    found = learn_pad(*stacks(tmp_path))
+def test_many_recordings_are_named_by_one_digest(even: LearnedPad) -> None:
     many = {f"r{k}.npz": f"{k:064x}" for k in range(90)}
-    text = pad_text(found, None, replace(MAKING, recordings=many, command="x" * 9000))
+    text = pad_text(even, None, replace(MAKING, recordings=many, command="x" * 9000))
     head = [line for line in text.splitlines() if line.startswith("#")]
     assert len(head) < 12
     assert max(map(len, head)) < 600
