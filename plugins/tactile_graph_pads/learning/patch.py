@@ -148,7 +148,12 @@ def _patch(values: Array, good: Flags, centre: Array, kind: PatchKind) -> Array:
     total = float(np.abs(read).sum())
     if total <= 0.0:
         return np.zeros(kind.size)
-    return np.asarray(np.sign(read) * (np.abs(read) / total) ** kind.power)
+    return to_the_power(read / total, kind.power)
+
+
+def to_the_power(shares: Array, power: float) -> Array:
+    """Return shares of readings to a power, each with its sign."""
+    return np.asarray(np.sign(shares) * np.abs(shares) ** power)
 
 
 def place_terms(centres: Array, shape: tuple[int, int]) -> Array:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph_pads.learning.patch import N_PLACE, PatchKind, patches
+from tactile_graph_pads.learning.patch import N_PLACE, PatchKind, patches, to_the_power
 from tactile_graph_pads.learning.place import PlaceCorrection, terms
 from tactile_graph_pads.learning.touching import contacts_of, paired
 
@@ -142,13 +143,18 @@ def learned_place(known: KnownContacts, good: Flags) -> LearnedPlace:
     windows = (0.0, max(1.0, 0.75 * known.radius_cells))
     folds: list[Fold] = []
     best: tuple[float, PatchKind, tuple[float, float, float]] | None = None
+    shares = {
+        (reach, window): _shares(known, good, PatchKind(reach, step, 1.0, window))
+        for reach, window in product(REACHES, windows)
+    }
     for power, reach, window in product(POWERS, REACHES, windows):
         kind = PatchKind(reach, step, power, window)
-        problem = _problem(known, good, kind)
+        problem = _problem(known, good, kind, shares[reach, window])
         if not folds:
             folds = unlike_halves(problem.terms[:, N_PLACE:], known.group)
+        told = _told(problem, folds)
         for ridges in ((*p, r) for p in PLACE_RIDGES for r in PATCH_RIDGES):
-            off = _mean_error(problem, folds, ridges)
+            off = _mean_error(told, ridges)
             if best is None or off < best[0]:
                 best = (off, kind, ridges)
     assert best is not None
@@ -169,11 +175,18 @@ class _Problem(NamedTuple):
     shape: tuple[int, int]
 
 
-def _problem(known: KnownContacts, good: Flags, kind: PatchKind) -> _Problem:
-    each = [patches(values, good, centres, kind) for values, centres in known.frames]
+def _shares(known: KnownContacts, good: Flags, kind: PatchKind) -> tuple[Array, Array]:
+    """Return the patches of contacts to the power 1, and the centres they lie on."""
+    first = replace(kind, power=1.0)
+    each = [patches(values, good, centres, first) for values, centres in known.frames]
     pairs = list(zip(known.frame.tolist(), known.number.tolist(), strict=True))
-    taken = np.array([each[f][0][k] for f, k in pairs])
-    middles = np.array([each[f][1][k] for f, k in pairs])
+    return np.array([each[f][0][k] for f, k in pairs]), np.array([each[f][1][k] for f, k in pairs])
+
+
+def _problem(
+    known: KnownContacts, good: Flags, kind: PatchKind, shares: tuple[Array, Array]
+) -> _Problem:
+    taken, middles = to_the_power(shares[0], kind.power), shares[1]
     mean = taken.mean(axis=0)
     scale = max(float(np.sqrt(((taken - mean) ** 2).sum(axis=1).mean())), 1e-12)
     shape = (good.shape[0], good.shape[1])
@@ -202,18 +215,30 @@ def _errors(
     return np.concatenate(off), np.concatenate(grown)
 
 
-def _mean_error(
-    problem: _Problem, folds: Sequence[Fold], ridges: tuple[float, float, float]
-) -> float:
-    """Return the mean distance of what the folds tell: as `_errors`, without the deviation."""
-    off = []
+class _Told(NamedTuple):
+    """What of a fold hangs on no prior: products of what is learned, and what it is to tell."""
+
+    square: Array
+    by_wanted: Array
+    terms: Array
+    wanted: Array
+
+
+def _told(problem: _Problem, folds: Sequence[Fold]) -> list[_Told]:
+    found = []
     for learned, told in folds:
         f, wanted = problem.terms[learned], problem.wanted[learned]
-        matrix = f.T @ f
-        matrix.flat[:: len(matrix) + 1] += _precision(f.shape[1], ridges)
-        off.append(
-            problem.wanted[told] - problem.terms[told] @ np.linalg.solve(matrix, f.T @ wanted)
-        )
+        found.append(_Told(f.T @ f, f.T @ wanted, problem.terms[told], problem.wanted[told]))
+    return found
+
+
+def _mean_error(folds: Sequence[_Told], ridges: tuple[float, float, float]) -> float:
+    """Return the mean distance of what the folds tell: as `_errors`, without the deviation."""
+    off = []
+    for one in folds:
+        matrix = one.square.copy()
+        matrix.flat[:: len(matrix) + 1] += _precision(len(matrix), ridges)
+        off.append(one.wanted - one.terms @ np.linalg.solve(matrix, one.by_wanted))
     return float(np.hypot(*np.concatenate(off).T).mean())
 
 
@@ -229,7 +254,7 @@ def _made(
     known: KnownContacts, good: Flags, kind: PatchKind, ridges: tuple[float, float, float],
     folds: Sequence[Fold],
 ) -> LearnedPlace:  # fmt: skip
-    problem = _problem(known, good, kind)
+    problem = _problem(known, good, kind, _shares(known, good, kind))
     off, grown = _errors(problem, folds, ridges)
     std = np.sqrt((off**2 / grown[:, None]).mean(axis=0))
     weights, covariance = _regression(problem, np.ones(len(known.true), np.bool_), ridges)

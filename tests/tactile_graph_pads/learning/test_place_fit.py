@@ -42,9 +42,21 @@ def learned(n=90, tail=0.6, seed=0, noise=0.2) -> LearnedPlace:
     return learned_place(known_contacts(frames, true, np.arange(n) // 3, 5.0), GOOD)
 
 
+@pytest.fixture(scope="module")
+def usual() -> LearnedPlace:
+    return learned()
+
+
+@pytest.fixture(scope="module")
+def of_few() -> LearnedPlace:
+    return learned(n=40)
+
+
 @pytest.mark.slow
-def test_what_a_tail_draws_along_is_taken_off_where_it_was_not_learned() -> None:
-    found = learned()
+def test_what_a_tail_draws_along_is_taken_off_where_it_was_not_learned(
+    usual: LearnedPlace,
+) -> None:
+    found = usual
     assert found.helps
     assert found.n_groups == 30
     frames, true = contacts(60, 0.6, seed=9)
@@ -60,8 +72,8 @@ def test_what_a_tail_draws_along_is_taken_off_where_it_was_not_learned() -> None
 
 
 @pytest.mark.slow
-def test_the_errors_held_out_are_those_of_contacts_not_learned() -> None:
-    found = learned()
+def test_the_errors_held_out_are_those_of_contacts_not_learned(usual: LearnedPlace) -> None:
+    found = usual
     frames, true = contacts(200, 0.6, seed=9)
     fresh = learned_place(known_contacts(frames, true, np.arange(200), 5.0), GOOD)
     assert found.blocks.off.mean() == pytest.approx(fresh.blocks.off.mean(), rel=0.5)
@@ -70,8 +82,8 @@ def test_the_errors_held_out_are_those_of_contacts_not_learned() -> None:
 
 
 @pytest.mark.slow
-def test_an_unlike_contact_is_told_less_surely() -> None:
-    found = learned()
+def test_an_unlike_contact_is_told_less_surely(usual: LearnedPlace) -> None:
+    found = usual
     frames, true = contacts(1, 0.3, seed=5)
     at = true[0]
     usual = found.correction.correct(frames[0], GOOD, at).std_cells
@@ -80,8 +92,8 @@ def test_an_unlike_contact_is_told_less_surely() -> None:
     assert (found.correction.correct(ring, GOOD, at).std_cells > 1.5 * usual).all()
 
 
-def test_no_contacts_are_no_answer() -> None:
-    none = learned(n=40).correction.correct(np.zeros(SHAPE), GOOD, np.zeros((0, 2)))
+def test_no_contacts_are_no_answer(of_few: LearnedPlace) -> None:
+    none = of_few.correction.correct(np.zeros(SHAPE), GOOD, np.zeros((0, 2)))
     assert none.centres.shape == none.std_cells.shape == (0, 2)
 
 
@@ -95,8 +107,8 @@ def test_halves_are_whole_groups_and_tell_each_other() -> None:
         assert 0.3 < told.mean() < 0.7
 
 
-def test_a_correction_comes_back_from_its_file(tmp_path: Path) -> None:
-    made = learned(n=40).correction
+def test_a_correction_comes_back_from_its_file(of_few: LearnedPlace, tmp_path: Path) -> None:
+    made = of_few.correction
     write_place(tmp_path / "p.npz", made)
     back = read_place(tmp_path / "p.npz")
     frames, true = contacts(1, 0.6)
