@@ -102,7 +102,17 @@ def test_the_command_in_the_first_lines_of_each_runs(
 
 @pytest.mark.slow  # pip builds and installs the package
 def test_installed_together_all_are_found_and_a_first_line_runs(tmp_path: Path) -> None:
-    pip = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--target", str(tmp_path)]
+    pip = [
+        sys.executable,
+        "-m",
+        "pip",
+        "install",
+        "-q",
+        "--no-compile",
+        "--no-deps",
+        "--target",
+        str(tmp_path),
+    ]
     isolation = ["--no-build-isolation"] if importlib.util.find_spec("hatchling") else []
     built = subprocess.run(
         [*pip, *isolation, str(FOLDER.parents[1])], capture_output=True, text=True

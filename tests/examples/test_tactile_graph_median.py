@@ -62,7 +62,16 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     python = scripts / "python"
     wheels = sorted(str(w) for w in (folder / "wheels").glob("*.whl"))
     subprocess.run(
-        [*pip, "--python", str(python), "install", "--no-deps", "--no-index", *wheels],
+        [
+            *pip,
+            "--python",
+            str(python),
+            "install",
+            "--no-compile",
+            "--no-deps",
+            "--no-index",
+            *wheels,
+        ],
         check=True,
         capture_output=True,
         env=_environment(),

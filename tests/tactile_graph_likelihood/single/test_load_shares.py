@@ -28,7 +28,8 @@ from tactile_graph_pads.geometry import Geometry
 
 pytestmark = pytest.mark.usefixtures("warm_kernels")
 
-FINE = 48
+FINE, COARSE = 48, 16
+"""Places along an element's side: for a reference, and for readings that scatter anyway."""
 SHAPES = [
     Circle(9.1, 8.7, 5.2),
     Ellipse(10.0, 9.0, 7.0, 4.0, 0.7),
@@ -73,9 +74,9 @@ def along_axes(shape):
     return np.array([[cos, sin], [-sin, cos]])
 
 
-def by_places(shape, fall, lean):
+def by_places(shape, fall, lean, fine=FINE):
     """Return the pressure's mean over each element, from many places on it."""
-    steps = (np.arange(FINE) + 0.5) / FINE
+    steps = (np.arange(fine) + 0.5) / fine
     at = (1.3 * np.arange(16)[:, None] + steps[None, :]).ravel()
     x, y = np.meshgrid(at, at)
     r = distances(shape, x, y)
@@ -88,7 +89,7 @@ def by_places(shape, fall, lean):
         stretched = axes @ np.diag(1.0 / np.array(half_axes(shape))) @ axes.T
         lean = stretched @ np.array(lean) * extent
     pressure *= np.exp((lean[0] * right + lean[1] * down) / extent)
-    return pressure.reshape(16, FINE, 16, FINE).mean(axis=(1, 3))
+    return pressure.reshape(16, fine, 16, fine).mean(axis=(1, 3))
 
 
 def by_kernel(shape, fall, lean, which="call"):
@@ -151,7 +152,8 @@ def frames(n, seed, fall=0.0, lean=0.0, shape=None):
     for _ in range(n):
         radius, way = rng.uniform(5.0, 7.5), rng.uniform(0.0, 2.0 * math.pi)
         disc = shape or Circle(*rng.uniform(radius, 20.5 - radius, 2), radius)
-        load = 70.0 * by_places(disc, fall, (lean * math.cos(way), lean * math.sin(way)))
+        leans = lean * math.cos(way), lean * math.sin(way)
+        load = 70.0 * by_places(disc, fall, leans, COARSE)
         load *= np.exp(0.48 * rng.standard_normal(load.shape)) * (rng.random(load.shape) >= 0.16)
         yield disc, Image(np.where(load < 5.0, 0.0, load), (1.3, 1.3), (-0.15, -0.15), "gram")
 
