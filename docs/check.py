@@ -10,6 +10,7 @@ import ast
 import dataclasses
 import doctest
 import importlib
+import os
 import pkgutil
 import re
 import shlex
@@ -21,6 +22,9 @@ from multiprocessing import get_context
 from pathlib import Path
 from types import ModuleType
 from unittest.mock import patch
+
+# Two processes at a time have a core each: BLAS's threads would wait for each other, busily.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from making.blocks import RUN, blocks_of, run_blocks
 from making.generate import INTO, KEPT
