@@ -73,18 +73,32 @@ class Running:
 
 
 @contextmanager
+def loading_for(page: Any, seconds: float) -> Iterator[None]:
+    """Have what is opened take so long to load."""
+
+    def hold(route: Any) -> None:
+        time.sleep(seconds)
+        route.continue_()
+
+    page.route("**/*.css", hold)
+    yield
+    page.unroute("**/*.css")
+
+
+@contextmanager
 def opened(orca: Reader, double: Double) -> Iterator[tuple[Reader, Running, str]]:
     """Open the page and have it read to its end, while frames come; with what was said.
 
     On a busy machine Orca may take the event that loading has ended before the one that it began;
-    from then on it takes the page for one that loads, and tells of no dialog. Such a one is opened
-    again.
+    from then on it takes the page for one that loads, and tells of no dialog. So the page takes its
+    time to load, and each time more if that was too little.
     """
-    for _ in range(LOADS):
+    for tried in range(LOADS):
         orca.page.goto("about:blank")
         time.sleep(1)
         orca.said()
-        orca.page.goto(double.address)
+        with loading_for(orca.page, 1.0 + tried):
+            orca.page.goto(double.address)
         with Running(double) as running:
             orca.page.wait_for_selector("#result-rows tr")
             said = orca.hears(
