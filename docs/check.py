@@ -1,7 +1,8 @@
 """Check the documentation: docstrings, doctests, links, commands, lengths, and every block run.
 
 Run with ``python docs/check.py``; exits with 1 and says what is wrong. ``--words`` tells instead
-how many words of each kind there are. What is made when the site is built is checked by that.
+how many words of each kind there are; ``--site-beside`` leaves to the building of the site what
+that does in any case, which is to run the tutorial. What else is made then is checked by that.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import ast
 import dataclasses
 import doctest
 import importlib
+import os
 import pkgutil
 import re
 import shlex
@@ -17,10 +19,14 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
 from types import ModuleType
 from unittest.mock import patch
+
+# Two processes at a time have a core each: BLAS's threads would wait for each other, busily.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from making.blocks import RUN, blocks_of, run_blocks
 from making.generate import INTO, KEPT
@@ -98,8 +104,9 @@ def described(share: int) -> tuple[int, list[str]]:
     return n, found
 
 
+@cache
 def pages() -> list[Path]:
-    """Return the Markdown pages."""
+    """Return the Markdown pages; once, as those of a site may come and go beside this."""
     first = [ROOT / f"{name}.md" for name in ("README", "CHANGELOG", "CONTRIBUTING")]
     return [*first, *(p for p in sorted(DOCS.rglob("*.md")) if INTO not in p.parents)]
 
@@ -184,8 +191,10 @@ def main() -> int:
         return 0
     checks = (links, commands, lengths)
     found = [text for page in pages() for check in checks for text in check(page)]
+    first = [] if "--site-beside" in sys.argv else [tutorial]
     with ProcessPoolExecutor(SHARES, get_context("spawn")) as pool:
-        waiting = [pool.submit(tutorial), *(pool.submit(blocks, page) for page in guides())]
+        waiting = [pool.submit(one) for one in first]
+        waiting += [pool.submit(blocks, page) for page in guides()]
         found += [text for one in waiting for text in one.result()]
     n = 0
     # Processes of their own: none in which a page's blocks have run.
@@ -196,8 +205,8 @@ def main() -> int:
     for text in found:
         print(text)
     print(
-        f"{n} modules and {len(pages())} pages checked, {len(guides()) + 1} of them by running all "
-        f"their blocks, {len(found)} troubles"
+        f"{n} modules and {len(pages())} pages checked, {len(guides()) + len(first)} of them by "
+        f"running all their blocks, {len(found)} troubles"
     )
     return 1 if found else 0
 

@@ -61,16 +61,21 @@ class Command:
 
     def bench(self) -> int:
         """Return the number of the process that runs the pipeline."""
-        return next(
-            c for c in self.children()
-            if "spawn_main" in Path(f"/proc/{c}/cmdline").read_text()
-        )  # fmt: skip
+        return next(c for c in self.children() if "spawn_main" in words_of(c))
 
     def end(self, number: int = signal.SIGINT) -> tuple[int, str]:
         """End it; return its exit code and what it printed."""
         self.process.send_signal(number)
         out, _ = self.process.communicate(timeout=PATIENCE_S)
         return self.process.returncode, out
+
+
+def words_of(process: int) -> str:
+    """Return how a process was begun; "" once it has ended."""
+    try:
+        return Path(f"/proc/{process}/cmdline").read_text(errors="replace")
+    except (FileNotFoundError, ProcessLookupError):
+        return ""
 
 
 def _with_ctrl_c() -> None:

@@ -22,6 +22,7 @@ from tactile_graph_live.server.guard import Door
 Plain = dict[str, Any]
 ROWS, COLUMNS, PITCH_CM = 8, 10, 1.3
 NAMES = ("footprint", "boundary", "circle")
+PATIENCE_S = 30.0
 
 
 def hello(**more: Any) -> Plain:
@@ -129,6 +130,13 @@ class Double:
         self._sockets: list[Any] = []
         self._loop: asyncio.AbstractEventLoop | None = None
 
+    def renew(self) -> None:
+        """Be as at first, once the pages of another test have gone."""
+        wait_for(lambda: not self._sockets, "all pages have gone")
+        self.greeting = [hello(), graph(), pulse(), frame(0)]
+        self.asked.clear()
+        self.answered.clear()
+
     async def serve(self, websocket: Any) -> None:
         """Serve a page until it goes."""
         self._loop = asyncio.get_running_loop()
@@ -155,9 +163,9 @@ class Double:
             text = message if isinstance(message, str) else json.dumps(message)
             for websocket in list(self._sockets):
                 told = websocket.send_text(text)
-                asyncio.run_coroutine_threadsafe(told, self._loop).result(5)
+                asyncio.run_coroutine_threadsafe(told, self._loop).result(PATIENCE_S)
 
-    def heard(self, kind: str, within_s: float = 5.0) -> Plain:
+    def heard(self, kind: str, within_s: float = PATIENCE_S) -> Plain:
         """Return the newest that pages asked of a kind; waits for it, and forgets all."""
         wait_for(
             lambda: any(a["type"] == kind for a in self.asked), f"a page asks {kind}", within_s
@@ -167,7 +175,7 @@ class Double:
         return found
 
 
-def wait_for(holds: Callable[[], bool], what: str, within_s: float = 5.0) -> None:
+def wait_for(holds: Callable[[], bool], what: str, within_s: float = PATIENCE_S) -> None:
     """Wait until something holds, or fail in its words."""
     end = time.monotonic() + within_s
     while not holds():

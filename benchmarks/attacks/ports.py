@@ -98,18 +98,20 @@ def marked(kit: Kit, pad: Pad, share: float) -> Pad:
     return np.frombuffer(bytes(raw), dtype).reshape(kit.shape)
 
 
-def flicker(kit: Kit, pad: Pad, rng: np.random.Generator) -> Pad:
-    noise = rng.integers(0, 3, kit.shape)
-    return np.clip(pad + noise, kit.low, kit.high)
+def flicker(kit: Kit, pads: NDArray[np.int64], rng: np.random.Generator) -> list[Pad]:
+    """Return a pool of the pad, or of the pads, with noise."""
+    noise = rng.integers(0, 3, (POOL, *kit.shape))
+    return [*np.clip(pads + noise, kit.low, kit.high)]
 
 
-def moving(kit: Kit, i: int, rng: np.random.Generator) -> Pad:
-    """Return a pad with a blob that goes round, once in 100 frames."""
-    y, x = np.ogrid[: kit.shape[0], : kit.shape[1]]
-    cy = kit.shape[0] * (0.5 + 0.3 * np.sin(2 * np.pi * i / 100))
-    cx = kit.shape[1] * (0.5 + 0.3 * np.cos(2 * np.pi * i / 100))
-    blob = 0.8 * kit.high * np.exp(-((y - cy) ** 2 + (x - cx) ** 2) / 8.0)
-    return flicker(kit, blob.astype(np.int64), rng)
+def moving(kit: Kit, rng: np.random.Generator) -> list[Pad]:
+    """Return a pool of pads with a blob that goes round, once in 100 frames."""
+    turn = 2 * np.pi * np.arange(POOL)[:, None] / 100
+    y, x = (np.arange(n) for n in kit.shape)
+    down = np.exp(-((y - kit.shape[0] * (0.5 + 0.3 * np.sin(turn))) ** 2) / 8.0)
+    along = np.exp(-((x - kit.shape[1] * (0.5 + 0.3 * np.cos(turn))) ** 2) / 8.0)
+    blobs = 0.8 * kit.high * down[:, :, None] * along[:, None, :]
+    return flicker(kit, blobs.astype(np.int64), rng)
 
 
 def scenes(kit: Kit, mark: bool, rng: np.random.Generator) -> list[Pad]:
@@ -128,19 +130,20 @@ def pads_of(kit: Kit, kind: str, rng: np.random.Generator) -> list[Pad]:
     still = kit.pad(rng)
     if "scenes" in kind:
         return scenes(kit, "header" in kind, rng)
-    plain = {
-        "random": lambda i: kit.random_pad(rng),
-        "still": lambda i: still,
-        "moving": lambda i: moving(kit, i, rng),
-        "flicker": lambda i: flicker(kit, still, rng),
+    plain: dict[str, Callable[[], list[Pad]]] = {
+        "random": lambda: [kit.random_pad(rng) for _ in range(POOL)],
+        "still": lambda: [still] * POOL,
+        "moving": lambda: moving(kit, rng),
+        "flicker": lambda: flicker(kit, still, rng),
     }
-    make = next(f for name, f in plain.items() if name in kind)
+    if "header" in kind and "still" in kind:
+        plain["still"] = lambda: [still]
+    pads = next(make for name, make in plain.items() if name in kind)()
     if "header" not in kind:
-        return [make(i) for i in range(POOL)]
+        return pads
     share = 0.5 if "half" in kind else float(rng.uniform(0.02, 0.98))
-    if "still" in kind:
-        return [marked(kit, still, share)] * POOL
-    return [marked(kit, make(i), share) for i in range(POOL)]
+    held = [marked(kit, pad, share) for pad in pads]
+    return held * (POOL // len(held))
 
 
 def kinds_of(kit: Kit) -> list[str]:

@@ -3,6 +3,7 @@
     python benchmarks/attacks/workers.py                   # 20 kills of each kind
     python benchmarks/attacks/workers.py --tries 400       # 200 of each
     python benchmarks/attacks/workers.py --kills 2         # of a run; then it is let end
+    python benchmarks/attacks/workers.py --nice 0          # among others that are as urgent
 
 A run of `circle-1` with two workers over a store, or over an unpacked `.npz`, gets SIGKILL at a
 moment drawn at random, until it ends by itself: after each kill no process of it may be left, the
@@ -13,6 +14,7 @@ process writes.
 
 from __future__ import annotations
 
+import argparse
 import os
 import random
 import signal
@@ -29,18 +31,17 @@ from attempts import Attempt, parser_of, told
 
 from tactile_graph import load
 
-FRAMES = 4000
 LONGEST_S = 3.0
 GONE_S = 10.0
 NAME = "out.csv"
 RECORDINGS = ("frames.zarr", "frames.npz")
 
 
-def begun(folder: Path, *words: str) -> subprocess.Popen[bytes]:
+def begun(folder: Path, nice: int, *words: str) -> subprocess.Popen[bytes]:
     """Return a command in a session of its own."""
     nowhere = subprocess.DEVNULL
     return subprocess.Popen(
-        ["nice", "-n", "10", sys.executable, "-P", "-m", "tactile_graph", *words],
+        ["nice", "-n", str(nice), sys.executable, "-P", "-m", "tactile_graph", *words],
         cwd=folder, stdout=nowhere, stderr=nowhere, start_new_session=True,
     )  # fmt: skip
 
@@ -83,10 +84,10 @@ def write_array(store: Path, array: Path) -> None:
 class Killing:
     """A folder with a store and an array, and the files that one process makes of them."""
 
-    def __init__(self, folder: Path, most_kills: int) -> None:
-        self.folder, self.most_kills = folder, most_kills
+    def __init__(self, folder: Path, most_kills: int, n_frames: int, nice: int) -> None:
+        self.folder, self.most_kills, self.nice = folder, most_kills, nice
         self._let_end("convert", "frames.zarr", "--source", "simulate", "--with",
-                      f"frames={FRAMES}")  # fmt: skip
+                      f"frames={n_frames}")  # fmt: skip
         write_array(folder / "frames.zarr", folder / "frames.npz")
         self.wholes = {}
         for recording in RECORDINGS:
@@ -99,13 +100,12 @@ class Killing:
         self.recording, self.whole = recording, self.wholes[recording]
 
     def _let_end(self, *words: str) -> None:
-        if begun(self.folder, *words).wait():
+        if begun(self.folder, self.nice, *words).wait():
             raise RuntimeError(f"{' '.join(words)} fails even when it is let end")
 
     def _begun(self, *more: str) -> subprocess.Popen[bytes]:
-        return begun(
-            self.folder, "run", "circle-1", self.recording, "--workers", "2", "-o", NAME, *more
-        )
+        words = ("run", "circle-1", self.recording, "--workers", "2", "-o", NAME, *more)
+        return begun(self.folder, self.nice, *words)
 
     def the_whole(self, rng: random.Random) -> tuple[str, str]:
         """Kill a run, and those that resume it; return what came of it, and what is wrong."""
@@ -150,12 +150,12 @@ class Killing:
         return came, f"{hidden} are left" if hidden else ""
 
 
-def attack(n_tries: int, seed: int, most_kills: int) -> Iterator[Attempt]:
+def attack(args: argparse.Namespace) -> Iterator[Attempt]:
     """Yield what came of killing runs, and their workers, in turn."""
-    rng = random.Random(seed)
+    rng = random.Random(args.seed)
     with tempfile.TemporaryDirectory() as folder:
-        killing = Killing(Path(folder), most_kills)
-        for i in range(n_tries):
+        killing = Killing(Path(folder), args.kills, args.frames, args.nice)
+        for i in range(args.tries):
             recording = RECORDINGS[i // 2 % 2]
             killing.over(recording)
             what = f"{'a worker' if i % 2 else 'the whole'}, {recording.partition('.')[2]}"
@@ -168,8 +168,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Attack, and return 1 if anything was lost, cut or left running."""
     parser = parser_of(__doc__ or "", 40)
     parser.add_argument("--kills", type=int, default=5, help="of one run at most")
+    parser.add_argument("--frames", type=int, default=4000, help="of a recording")
+    parser.add_argument("--nice", type=int, default=10, help="how far others come first")
     args = parser.parse_args(arguments)
-    return told(attack(args.tries, args.seed, args.kills), args)
+    return told(attack(args), args)
 
 
 if __name__ == "__main__":

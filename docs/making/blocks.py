@@ -9,7 +9,8 @@
   anything.
 - A block that begins with ``# not run:`` and the reason is left alone.
 - A comment ``<!-- before: … -->`` right above a block holds what bash does first, such as making
-  the files that the page's reader has; ``<!-- run by FILE -->`` says what else runs the block.
+  the files that the page's reader has; ``<!-- run by FILE -->`` says what else runs the block, and
+  ``<!-- run here with 20 frames -->`` that so many do, where the block asks for more.
 """
 
 from __future__ import annotations
@@ -32,10 +33,12 @@ ROOT = Path(__file__).parents[2]
 NOT_RUN = "# not run: "
 PART = "# part of "
 FENCE = re.compile(
-    r"^(?:<!-- (?:before:\n(?P<before>(?:(?!-->).)*)|run by (?P<run_by>\S+) )-->\n)?"
+    r"^(?:<!-- (?:before:\n(?P<before>(?:(?!-->).)*)|run by (?P<run_by>\S+) "
+    r"|run here with (?P<frames>\d+) frames )-->\n)*"
     r"(?P<fence>```)(?P<language>\w+)[^\n]*\n(?P<text>.*?)^```$",
     re.M | re.S,
 )
+FRAMES = re.compile(r"(?<=\bframes[ =])\d+")
 FILE = re.compile(r"# ([\w-]+\.yaml)$")
 RUN = ("python", "sh", "yaml")
 LONGEST_S = 600.0
@@ -45,7 +48,8 @@ LONGEST_S = 600.0
 class Block:
     """A fenced block: where it stands, its language, its text; what bash does before.
 
-    ``run_by`` is the file that runs it, below the project's root, where that is not this one.
+    ``run_by`` is the file that runs it, below the project's root, where that is not this one;
+    ``frames`` how many it is run with, 0 for as many as it says.
     """
 
     place: str
@@ -53,6 +57,7 @@ class Block:
     text: str
     before: str = ""
     run_by: str = ""
+    frames: int = 0
 
     @property
     def first(self) -> str:
@@ -67,6 +72,7 @@ def blocks_of(page: Path) -> list[Block]:
         Block(
             f"{page.name}:{text.count(chr(10), 0, m.start('fence')) + 1}",
             m["language"], m["text"], m["before"] or "", m["run_by"] or "",
+            int(m["frames"] or 0),
         )
         for m in FENCE.finditer(text)
         if m["language"] in (*RUN, "text")
@@ -111,7 +117,8 @@ class BlockError(Exception):
 
 def _run(block: Block, folder: Path, space: dict[str, object]) -> str:
     if block.language == "sh":
-        return _shell(block.text, folder)
+        fewer = FRAMES.sub(str(block.frames), block.text) if block.frames else block.text
+        return _shell(fewer, folder)
     if block.language == "python":
         return _python(block, folder, space)
     return _yaml(block, folder)

@@ -44,7 +44,7 @@ def test_interrupted_workers_end_soon_and_leave_nothing() -> None:
 
 
 def test_plugins_that_misbehave_cost_only_themselves() -> None:
-    attacked("plugins.py", "--tries", "8")
+    attacked("plugins.py", "--tries", "12", "--forks")
 
 
 def test_no_port_gives_a_misaligned_frame_as_good_and_all_lock_again() -> None:
@@ -71,4 +71,4 @@ def test_hostile_frames_are_answered_or_refused() -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="looks for processes where Linux tells them")
 def test_killed_runs_with_workers_are_resumed_to_the_same_file() -> None:
     pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
-    attacked("workers.py", "--tries", "4", "--kills", "3")
+    attacked("workers.py", "--tries", "4", "--kills", "2", "--frames", "2000", "--nice", "0")

@@ -40,7 +40,10 @@ class Expectation:
     smooth: NDArray[np.bool_]
 
     def nats(self, units: NDArray[np.int16], before: NDArray[np.int16]) -> NDArray[np.float64]:
-        """Return the log likelihood of each byte of units, each after the one before it."""
+        """Return the log likelihood of each byte of units, each after the one before it.
+
+        Either may have more axes before its last two: all are held against all.
+        """
         inside = (units >= self.low) & (units <= self.high)
         ranged = np.where(inside, self.within, self.outside)
         near = (1.0 - STRAY) * _cauchy(units - before, self.step) + STRAY / 256.0
@@ -109,8 +112,7 @@ class Likeness:
             return np.zeros(len(units))
         wide = units.astype(np.int16)
         last = self.units[-AFTER:].astype(np.int16)
-        nats = [expected.nats(wide, one).sum(axis=1) for one in last]
-        return np.asarray(np.max(nats, axis=0))
+        return np.asarray(expected.nats(wide, last[:, None]).sum(axis=-1).max(axis=0))
 
     def _expectation(self) -> Expectation | None:
         if self._expected is None and self._n_recent > 1:

@@ -48,6 +48,14 @@ def test_lines_that_come_in_another_order_are_told(run: Run) -> None:
     assert len(run(page.format("two", "one"))) == 1
 
 
+def test_a_block_is_run_with_fewer_frames_where_the_page_says_so(run: Run) -> None:
+    block = "```sh\necho $(cat n) --frames 400 --with frames=20 --frames-a-second 5\n```\n\n"
+    first = "<!-- before:\necho 7 > n\n-->\n"
+    fewer = "```text\n7 --frames 3 --with frames=3 --frames-a-second 5\n```\n"
+    assert run(f"{first}<!-- run here with 3 frames -->\n{block}{fewer}") == []
+    assert len(run(f"{first}{block}{fewer}")) == 1
+
+
 def test_a_command_that_fails_is_told_and_the_next_block_still_runs(run: Run) -> None:
     (told,) = run("```sh\nfalse\necho never\n```\n\n```python\nprint(1)\n```\n```text\n1\n```\n")
     assert "page.md:1: ends with 1" in told

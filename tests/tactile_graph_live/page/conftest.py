@@ -50,7 +50,8 @@ class Window:
         return [*self.printed, *self.page.evaluate("window.complaints ?? []")]
 
     def leave(self) -> None:
-        """Go where there is nothing, and forget what was heard."""
+        """Go where there is nothing, and forget what was heard; the page forgets too."""
+        self.page.evaluate("try { localStorage.clear(); sessionStorage.clear() } catch {}")
         self.page.goto("about:blank")
         self.printed.clear()
         self.asked_for.clear()
@@ -69,8 +70,8 @@ def kept(browser: Any) -> Iterator[list[Window]]:
 def window(browser: Any, kept: list[Window]) -> Iterator[Any]:
     """Makes windows; all are left in the end.
 
-    One without options may have shown pages of other tests. Each server has a port of its own, so
-    a page finds nothing stored by them. What stays with a window is for one of its own: ``own``.
+    One without options may have shown pages of other tests, which leave nothing stored. What stays
+    with a window is for one of its own: ``own``.
     """
     made: list[Window] = []
     free = [*kept]
@@ -91,13 +92,20 @@ def window(browser: Any, kept: list[Window]) -> Iterator[Any]:
         one.leave()
 
 
-@pytest.fixture
-def double() -> Iterator[Any]:
-    """A server that says what the test has it say."""
+@pytest.fixture(scope="module")
+def server() -> Iterator[Any]:
+    """A server that tests of a module use in turn: to start and end it takes half of their time."""
     from helpers_live_page import Double, served
 
     with served(Double()) as double:
         yield double
+
+
+@pytest.fixture
+def double(server: Any) -> Any:
+    """A server that says what the test has it say."""
+    server.renew()
+    return server
 
 
 @pytest.fixture
@@ -109,4 +117,4 @@ def page(window: Any, double: Any) -> Iterator[Any]:
     opened.page.wait_for_selector("#result-rows tr")
     yield opened.page
     assert opened.complaints() == []
-    opened.leave()  # its server need not wait for it
+    opened.leave()  # the next test waits until it has gone

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import statistics
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +52,11 @@ def opened(window: Any, command: Command) -> Any:
     return found
 
 
+def count(page: Any) -> int:
+    """Return how many frames the page says there were."""
+    return int("0" + "".join(filter(str.isdigit, page.locator("#frames").inner_text())))
+
+
 def standing(page: Any) -> str:
     """Return which frame is shown, once no other follows."""
     shown = ["", page.locator("#when").inner_text()]
@@ -60,6 +66,20 @@ def standing(page: Any) -> str:
         if shown[-1] == shown[-2]:
             return str(shown[-1])
     raise AssertionError(f"frames go on: {shown}")
+
+
+@pytest.fixture(scope="module")
+def shared_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("shared") / "mine.yaml"
+    path.write_text(PIPELINE)
+    return path
+
+
+@pytest.fixture(scope="module")
+def shared(shared_file: Path) -> Iterator[Command]:
+    """A command for tests that leave its file, its settings and its source as they were."""
+    with running(shared_file.parent, shared_file.name, "--rate", "40") as command:
+        yield command
 
 
 @pytest.fixture
@@ -121,27 +141,28 @@ def test_two_hundred_wrong_saves_leave_the_old_graph_running(window: Any, file: 
         assert found.complaints() == []
 
 
-def test_a_slider_changes_what_runs_and_the_yaml_is_saved(window: Any, file: Path) -> None:
-    with running(file.parent, file.name, "--rate", "40") as command:
-        found = opened(window, command)
-        page = found.page
-        box = page.locator("#settings").get_by_label("level V", exact=True)
-        box.fill("0.05")
-        box.press("Enter")
-        page.locator("#yaml li.changed").wait_for()
-        assert "level_v: 0.05" in page.locator("#yaml li.changed").inner_text()
-        box.fill("-3")
-        box.press("Enter")
-        page.locator(".say.error").wait_for()
-        wait_for(lambda: box.input_value() == "0.05", "what was refused goes back")
-        page.get_by_label("Save as").fill("better")
-        page.get_by_role("button", name="Save", exact=True).click()
-        page.locator(".say.note").wait_for()
-        assert (file.parent / "better.yaml").read_text() == PIPELINE.replace("0.01", "0.05")
-        page.locator("#settings").get_by_label("Reset footprint, level_v").click()
-        wait_for(lambda: box.input_value() == "0.01", "the file's value is back")
-        assert file.read_text() == PIPELINE
-        assert found.complaints() == []
+def test_a_slider_changes_what_runs_and_the_yaml_is_saved(
+    window: Any, shared: Command, shared_file: Path
+) -> None:
+    found = opened(window, shared)
+    page = found.page
+    box = page.locator("#settings").get_by_label("level V", exact=True)
+    box.fill("0.05")
+    box.press("Enter")
+    page.locator("#yaml li.changed").wait_for()
+    assert "level_v: 0.05" in page.locator("#yaml li.changed").inner_text()
+    box.fill("-3")
+    box.press("Enter")
+    page.locator(".say.error").wait_for()
+    wait_for(lambda: box.input_value() == "0.05", "what was refused goes back")
+    page.get_by_label("Save as").fill("better")
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.locator(".say.note").wait_for()
+    assert (shared_file.parent / "better.yaml").read_text() == PIPELINE.replace("0.01", "0.05")
+    page.locator("#settings").get_by_label("Reset footprint, level_v").click()
+    wait_for(lambda: box.input_value() == "0.01", "the file's value is back")
+    assert shared_file.read_text() == PIPELINE
+    assert found.complaints() == []
 
 
 NESTED = """\
@@ -200,45 +221,43 @@ def test_a_step_that_is_ended_again_and_again_is_told_and_the_others_go_on(
         assert found.complaints() == []
 
 
-def test_pause_step_scrub_and_live(window: Any, file: Path) -> None:
-    with running(file.parent, file.name, "--rate", "40") as command:
-        found = opened(window, command)
-        page = found.page
-        page.wait_for_timeout(2000)  # that there is something to scrub over
-        page.keyboard.press("Space")
-        page.locator("#link[data-state=paused]").wait_for()
-        still = standing(page)
-        number = int(still.split(" · ")[0].removeprefix("frame "))
-        page.keyboard.press(".")
-        drawn(page, f"frame {number + 1}")
-        page.get_by_label("Time", exact=True).fill("-1")
-        wait_for(lambda: "s ago" in page.locator("#time-text").inner_text(), "it is scrubbed back")
-        wait_for(lambda: page.locator("#when").inner_text() != still, "an older frame is drawn")
-        page.keyboard.press("l")
-        page.locator("#live[aria-pressed=true]").wait_for()
-        wait_for(lambda: page.locator("#time-text").inner_text() == "now", "it is live again")
-        assert found.complaints() == []
+def test_pause_step_scrub_and_live(window: Any, shared: Command) -> None:
+    found = opened(window, shared)
+    page = found.page
+    wait_for(lambda: count(page) > 60, "there is something to scrub over", 60)
+    page.keyboard.press("Space")
+    page.locator("#link[data-state=paused]").wait_for()
+    still = standing(page)
+    number = int(still.split(" · ")[0].removeprefix("frame "))
+    page.keyboard.press(".")
+    drawn(page, f"frame {number + 1}")
+    page.get_by_label("Time", exact=True).fill("-1")
+    wait_for(lambda: "s ago" in page.locator("#time-text").inner_text(), "it is scrubbed back")
+    wait_for(lambda: page.locator("#when").inner_text() != still, "an older frame is drawn")
+    page.keyboard.press("l")
+    page.locator("#live[aria-pressed=true]").wait_for()
+    wait_for(lambda: page.locator("#time-text").inner_text() == "now", "it is live again")
+    assert found.complaints() == []
 
 
-def test_record_and_tare(window: Any, file: Path) -> None:
+def test_record_and_tare(window: Any, shared: Command, shared_file: Path) -> None:
     pytest.importorskip("zarr", reason="the extra `zarr` is not there")
-    with running(file.parent, file.name, "--rate", "40") as command:
-        found = opened(window, command)
-        page = found.page
-        page.get_by_label("Label").fill("cup")
-        page.get_by_role("button", name="Record").click()
-        page.locator("#record[aria-pressed=true]").wait_for()
-        told = page.locator("#recording")
-        wait_for(lambda: "frames into " in told.inner_text(), "the recording is told")
-        page.wait_for_timeout(700)
-        page.get_by_role("button", name="Stop").click()
-        page.locator("#record[aria-pressed=false]").wait_for()
-        assert len(list(file.parent.glob("*.zarr"))) == 1
-        page.keyboard.press("t")
-        page.locator("#tare[aria-pressed=true]").wait_for(timeout=10_000)
-        page.keyboard.press("t")
-        page.locator("#tare[aria-pressed=false]").wait_for(timeout=10_000)
-        assert found.complaints() == []
+    found = opened(window, shared)
+    page = found.page
+    page.get_by_label("Label").fill("cup")
+    page.get_by_role("button", name="Record").click()
+    page.locator("#record[aria-pressed=true]").wait_for()
+    told = page.locator("#recording")
+    wait_for(lambda: "frames into " in told.inner_text(), "the recording is told")
+    page.wait_for_timeout(700)
+    page.get_by_role("button", name="Stop").click()
+    page.locator("#record[aria-pressed=false]").wait_for()
+    assert len(list(shared_file.parent.glob("*.zarr"))) == 1
+    page.keyboard.press("t")
+    page.locator("#tare[aria-pressed=true]").wait_for(timeout=10_000)
+    page.keyboard.press("t")
+    page.locator("#tare[aria-pressed=false]").wait_for(timeout=10_000)
+    assert found.complaints() == []
 
 
 def test_the_server_is_killed_and_started_again(window: Any, file: Path) -> None:
@@ -280,15 +299,16 @@ def test_unplugged_and_plugged_in_again(window: Any, tmp_path: Path) -> None:
         assert found.complaints() == []
 
 
-def test_two_windows_see_the_same(window: Any, file: Path) -> None:
-    with running(file.parent, file.name, "--rate", "40") as command:
-        one, two = opened(window, command).page, opened(window, command).page
-        wait_for(lambda: one.locator("#viewers").inner_text() == "2", "both are counted")
-        box = one.locator("#settings").get_by_label("level V", exact=True)
-        box.fill("0.05")
-        box.press("Enter")
-        other = two.locator("#settings").get_by_label("level V", exact=True)
-        wait_for(lambda: other.input_value() == "0.05", "the other shows it")
+def test_two_windows_see_the_same(window: Any, shared: Command) -> None:
+    one, two = opened(window, shared).page, opened(window, shared).page
+    wait_for(lambda: one.locator("#viewers").inner_text() == "2", "both are counted")
+    box = one.locator("#settings").get_by_label("level V", exact=True)
+    box.fill("0.05")
+    box.press("Enter")
+    other = two.locator("#settings").get_by_label("level V", exact=True)
+    wait_for(lambda: other.input_value() == "0.05", "the other shows it")
+    two.locator("#settings").get_by_label("Reset footprint, level_v").click()
+    wait_for(lambda: box.input_value() == "0.01", "the file's value is back")
 
 
 def test_a_page_from_elsewhere_brings_the_token(window: Any, file: Path) -> None:

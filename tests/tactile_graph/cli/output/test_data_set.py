@@ -203,8 +203,8 @@ def test_a_folder_as_output_says_how_a_data_set_is_asked_for() -> None:
 @pytest.mark.slow
 def test_a_killed_run_leaves_whole_parts_alone_and_the_next_one_clears_up(tmp_path: Path) -> None:
     pq = pytest.importorskip("pyarrow.parquet")
-    names = [f"r{k}.npy" for k in range(8)]
-    recordings(*names, frames=1500)
+    names = [f"r{k}.npy" for k in range(6)]
+    recordings(*names, frames=1000)
     command = [sys.executable, "-c", "from tactile_graph.cli import main; main()", "run"]
     command += ["pressed.yaml", *names, "--with", "quantity=volt", "-o", "results/"]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -218,11 +218,11 @@ def test_a_killed_run_leaves_whole_parts_alone_and_the_next_one_clears_up(tmp_pa
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     parts = [*Path("results").glob("*/*.parquet")]
-    assert 2 <= len(parts) < 8
-    assert all(pq.ParquetFile(part).metadata.num_rows == 1500 for part in parts)
+    assert 2 <= len(parts) < 6
+    assert all(pq.ParquetFile(part).metadata.num_rows == 1000 for part in parts)
     manifest = manifest_of(tmp_path / "results")
     assert manifest is not None
     assert len(parts) - len(manifest["recordings"]) in (0, 1)
     assert subprocess.run(command, capture_output=True, check=False).returncode in (0, 1)
     assert not [*Path("results").rglob("*.part")]
-    assert len([*Path("results").glob("*/*.parquet")]) == 8
+    assert len([*Path("results").glob("*/*.parquet")]) == 6
