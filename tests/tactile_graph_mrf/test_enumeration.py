@@ -27,6 +27,8 @@ from tactile_graph_mrf.energy.state import observed_state, random_state
 from tactile_graph_mrf.energy.total import energy
 from tactile_graph_mrf.samplers.annealing import annealed, temperatures
 
+pytestmark = pytest.mark.slow  # the sampler is compiled: its states are counted in thousands
+
 BETA = 0.5
 
 

@@ -23,6 +23,7 @@ def share_right(frames: Iterable[Frame]) -> float:
     return float(np.mean([found == true for found, true in told]))
 
 
+@pytest.mark.slow
 def test_fingertips_on_a_panel_are_counted(tmp_path: Path) -> None:
     assert share_right(panel_frames(tmp_path)) >= 0.95
 

@@ -10,6 +10,7 @@ from tactile_graph.engine.outcomes.outcome import Skipped
 from tactile_graph_classifiers.measuring.shapes import true_name
 
 
+@pytest.mark.slow
 def test_only_the_localiser_of_the_identified_class_runs_and_explain_says_why():
     pipeline = load("identify-locate")
     localisers = [name for name in pipeline.outputs if name != "identity"]

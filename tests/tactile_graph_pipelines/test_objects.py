@@ -88,6 +88,7 @@ def test_fingers_on_a_panel_that_blurs_are_found_within_half_a_cell() -> None:
         assert score.worst_error_cm < 0.24
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("real", [True, False], ids=["real", "look-alike"])
 def test_on_a_panel_contacts_are_counted_and_their_centres_beat_the_plain_centroid(
     real: bool, tmp_path: Path

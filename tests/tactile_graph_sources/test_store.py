@@ -124,7 +124,8 @@ for i in range(10**6):
 """
 
 
-@pytest.mark.parametrize("after", [100, pytest.param(211, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("after", [100, 211])
 def test_a_writer_that_is_killed_loses_at_most_its_last_chunk(tmp_path: Path, after: int) -> None:
     path = tmp_path / "a.zarr"
     writer = subprocess.Popen(

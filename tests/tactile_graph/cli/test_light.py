@@ -36,7 +36,8 @@ def test_help_imports_neither_numpy_nor_anything_else_that_is_slow(args):
     assert imported(*args, also=("tactile_graph.compiled", "starlette", "uvicorn")) == ["0"]
 
 
-@pytest.mark.parametrize("command", ["steps", pytest.param("plugins", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("command", ["steps", "plugins"])
 def test_lists_import_no_step(command):
     assert imported(command) == ["0", "rich"]
 

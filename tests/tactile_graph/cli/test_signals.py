@@ -22,8 +22,9 @@ def process(*args: str, **streams: object) -> subprocess.Popen[bytes]:
     return subprocess.Popen(command, env=ENV, stderr=subprocess.PIPE, **streams)  # type: ignore[call-overload]
 
 
+@pytest.mark.slow
 @posix
-@pytest.mark.parametrize("name", ["SIGTERM", pytest.param("SIGHUP", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
 def test_a_run_that_a_signal_ends_leaves_whole_lines_and_says_so(tmp_path: Path, name: str) -> None:
     out = tmp_path / "out.jsonl"
     running = process("run", *ENDLESS, "-o", str(out))

@@ -61,6 +61,7 @@ def test_this_numba_is_one_that_was_tried() -> None:
     assert machine_code.whole()
 
 
+@pytest.mark.slow
 def test_only_what_python_calls_is_kept_on_disk(fresh: Any, tmp_path: Path) -> None:
     fresh().spread.compiled(VALUES)
     assert kept(tmp_path) == {"helpers_kernels.spread"}
@@ -133,6 +134,7 @@ def test_a_function_that_numba_alone_compiles_may_call_kernels(fresh: Any) -> No
         twice(np.ones(helpers_kernels.MOST + 2))
 
 
+@pytest.mark.slow
 def test_what_another_process_makes_is_waited_for_and_loaded(
     fresh: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -50,6 +50,7 @@ def near(picture: np.ndarray, rgb: tuple[int, int, int]) -> int:
     return int((np.abs(picture[80:] - rgb).max(axis=2) < 40).sum())
 
 
+@pytest.mark.slow
 def test_a_film_runs_at_the_pace_of_the_frames_and_does_not_drift(tmp_path: Path) -> None:
     times = [k / 15.0 for k in range(6)]  # rounded one by one they would end 0.017 s early
     filmed(timed(times), tmp_path / "a.gif")

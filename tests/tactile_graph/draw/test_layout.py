@@ -86,6 +86,7 @@ def test_no_two_boxes_overlap(graph: tuple[dict[str, tuple[float, float]], list[
         assert not overlap(a, b)
 
 
+@pytest.mark.slow
 @given(graphs())
 @settings(max_examples=60, deadline=None)
 def test_every_wire_goes_from_left_to_right_and_keeps_off_the_boxes(

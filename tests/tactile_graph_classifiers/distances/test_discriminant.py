@@ -59,6 +59,7 @@ def test_known_objects_are_named_and_a_stranger_is_unknown():
     assert found.nearest in {"light", "heavy", "wide"}
 
 
+@pytest.mark.slow
 def test_it_tells_apart_by_directions_what_no_feature_alone_tells():
     objects = many(12, seed=3, n=60)
     learned, tested = split(objects, 25)
@@ -233,6 +234,7 @@ def test_another_unit_is_refused_when_the_pipeline_is_loaded_where_it_is_known(s
 # -- its parts -------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_of_the_same_examples_the_manner_is_chosen_once(monkeypatch):
     calls = []
     monkeypatch.setattr(choosing, "choose", lambda its: calls.append(its) or choose(its))

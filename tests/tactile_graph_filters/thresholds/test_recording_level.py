@@ -44,6 +44,7 @@ def test_the_level_is_that_of_a_frame_with_the_recordings_noise_and_peak(
     assert found.told.endswith("r.npy, 40 frames")
 
 
+@pytest.mark.slow
 def test_every_frame_is_parted_by_the_same_level(frames: np.ndarray, recording: Path) -> None:
     """Frame by frame an empty pad has a lower level than a loaded one, and a level of its own."""
     one, each = Threshold(level="auto", noise_of=recording), Threshold(level="auto")

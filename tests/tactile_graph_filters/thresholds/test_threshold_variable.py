@@ -11,6 +11,7 @@ from tactile_graph_filters.thresholds.threshold_variable import threshold_variab
 READINGS = arrays(np.float64, (5, 6), elements=st.floats(0, 1e3))
 
 
+@pytest.mark.slow
 @given(READINGS, st.floats(0.01, 0.99), st.floats(0, 10))
 def test_the_level_fulfils_its_law_and_no_lower_one_does(values, fraction, floor):
     mask, level = threshold_variable(image_of(values), fraction=fraction, floor=floor)

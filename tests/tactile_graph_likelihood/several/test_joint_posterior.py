@@ -122,6 +122,7 @@ def test_slopes_are_those_of_the_gain():
     assert matrix[4, 4] == matrix[5, 5] == 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("by", BOTH)
 def test_maximising_gains_and_comes_near_the_truth(by):
     off = []

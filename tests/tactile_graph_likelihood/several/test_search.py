@@ -64,6 +64,7 @@ def three_discs():
     return bare._replace(logs=logs, states=states), row
 
 
+@pytest.mark.slow
 def test_three_outlines_may_take_the_place_of_two_that_cover_three_objects():
     problem, row = three_discs()
     search = Search(problem, KINDS, 1.0, 1.0)

@@ -23,6 +23,7 @@ def test_without_smoothness_every_cell_goes_level_by_level_to_its_datum() -> Non
     np.testing.assert_array_equal(labels, problem.observed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [1, 2, 3])
 @pytest.mark.parametrize("start", [0, 3])
 def test_shifts_of_regions_end_at_the_very_minimum_of_convex_costs(start: int, order: int) -> None:

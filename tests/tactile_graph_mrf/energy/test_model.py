@@ -44,6 +44,7 @@ def test_energy_is_the_sum_over_all_cliques(order, smoothness):
     assert energy(problem, labels) == pytest.approx(counted(problem, labels, *none), rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("noise", NOISES)
 def test_every_noise_is_counted_and_the_same_compiled(noise):
     rng = np.random.default_rng(3)

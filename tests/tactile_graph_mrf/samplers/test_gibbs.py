@@ -114,6 +114,7 @@ def test_extremes_of_the_noise_stay_finite(noise, sigma):
     assert np.isfinite(restore(picture(5, 5), model=model, n_sweeps=4).trace).all()
 
 
+@pytest.mark.slow
 def test_missing_cells_are_inferred_and_become_valid():
     image = picture()
     values = image.values.copy()

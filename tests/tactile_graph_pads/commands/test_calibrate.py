@@ -141,6 +141,7 @@ def test_only_empty_frames_are_too_few_loads(tmp_path: Path) -> None:
     refused(DataError, "too few loads: every frame is of the empty pad", tmp_path / "e.npz")
 
 
+@pytest.mark.slow
 def test_swapped_loads_are_refused(tmp_path: Path) -> None:
     given = many_files(tmp_path)
     a, b = (g.rpartition("=") for g in (given[1], given[4]))
@@ -154,6 +155,7 @@ def test_saturated_loads_are_refused(tmp_path: Path) -> None:
     refused(DataError, "saturated: under 1000 g an element reads", *given, "--full-scale", 1.8)
 
 
+@pytest.mark.slow
 def test_a_curve_that_would_fall_is_refused(tmp_path: Path) -> None:
     grams = (60.0, 75.0, 90.0, 110.0, 3000.0, 3300.0, 9000.0)
     refused(

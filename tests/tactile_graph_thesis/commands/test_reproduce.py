@@ -131,7 +131,7 @@ def test_stdout_can_take_the_csv_alone() -> None:
 @pytest.mark.parametrize(
     ("name", "file", "start"),
     [
-        ("bump", "p.png", b"\x89PNG"),
+        pytest.param("bump", "p.png", b"\x89PNG", marks=pytest.mark.slow),
         pytest.param("bias-loaded", "p.pdf", b"%PDF", marks=pytest.mark.slow),
         ("figure-4.19", "p.svg", b"<svg"),
     ],

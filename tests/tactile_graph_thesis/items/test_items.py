@@ -152,7 +152,13 @@ def test_each_study_of_noise_comes_out(name: str, monkeypatch: pytest.MonkeyPatc
     }
 
 
-@pytest.mark.parametrize("name", ["table-4.3", "table-4.4", "table-4.5", "table-4.7", "table-4.8"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("table-4.3", "table-4.4", "table-4.5", "table-4.7"),
+        pytest.param("table-4.8", marks=pytest.mark.slow),
+    ],
+)
 def test_tables_stand_beside_the_thesis(name: str, work: Work) -> None:
     (outcome,) = outcomes(chosen((name,)), work)
     assert outcome.made is not None

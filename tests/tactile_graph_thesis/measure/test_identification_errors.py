@@ -46,7 +46,8 @@ def test_an_object_that_was_not_learned_is_called_unknown():
     assert min(strangers_rejected(seed=1).values()) > 0.95
 
 
-@pytest.mark.parametrize("kind", ["curve", pytest.param("decoupled", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["curve", "decoupled"])
 def test_beyond_1000_g_fewer_than_5_percent_are_wrong_and_at_0_g_it_is_a_guess(kind):
     curves = error_curves(PAIRS[:1], Trials(kind, (0, 1500), n_test=25))
     for step in ("minimum_distance_normalised", "mahalanobis"):

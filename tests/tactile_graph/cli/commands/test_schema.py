@@ -40,6 +40,7 @@ def shipped() -> dict[str, Any]:
     return pipeline_schema(installed())[0]
 
 
+@pytest.mark.slow
 def test_a_files_own_schema_completes_its_nodes_in_wires_and_conditions(mine: Path) -> None:
     got = call("schema", "mine.yaml")
     assert got.exit_code == 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+import pytest
 
 from tactile_graph_pads.pad import load_pad
 from tactile_graph_thesis.items.chapter_2.section_2_2_2_converter import (
@@ -40,6 +41,7 @@ def test_the_range_within_5_percent_widens_with_bits() -> None:
     assert 800.0 < tops[BITS.index(12)] < 2500.0
 
 
+@pytest.mark.slow
 def test_nothing_is_lost_before_the_column_sum_comes_near_one() -> None:
     got = found()
     assert (got.of_bits_lost[BITS.index(12)][got.column_sum < 0.99] == 0.0).all()
