@@ -73,7 +73,7 @@ def without_hollow(kind: int, readings: Readings, p: Values, voids: float) -> Re
         return None
     rim_cm = 0.5 * float(far[best] + far[best + 1])
     over_it = inwards < rim_cm + MARGIN * side
-    rim = readings.with_states(np.where(over_it, np.uint8(UNKNOWN), readings.states))
+    rim = readings.without(over_it)
     return rim if rim.touched >= FEWEST else None
 
 

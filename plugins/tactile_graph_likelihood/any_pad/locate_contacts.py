@@ -13,7 +13,6 @@ from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import Contact
 from tactile_graph_likelihood.any_pad.choose import Locate, Name
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, AnyPadSettings
-from tactile_graph_likelihood.single.element_terms import UNKNOWN
 from tactile_graph_likelihood.single.likely import Likely
 from tactile_graph_likelihood.single.readings import Readings
 
@@ -93,7 +92,7 @@ def alone(readings: Readings, owner: np.ndarray, number: int) -> Readings:
         If none of the contact's own shows.
     """
     others = (owner > 0) & (owner != number)
-    its = readings.with_states(np.where(others, np.uint8(UNKNOWN), readings.states))
+    its = readings.without(others)
     if not its.touched:
         raise Degenerate(f"contact {number}: no reading rises above the noise")
     return its

@@ -4,19 +4,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
-from tactile_graph_likelihood.any_pad.clump import clump_of
+from tactile_graph_likelihood.any_pad.clump import clump_of, without_lone
 from tactile_graph_likelihood.any_pad.from_frame import half_extents
 from tactile_graph_likelihood.geometry.outlines import RECTANGLE, Values, sizes
-from tactile_graph_likelihood.single.element_terms import UNKNOWN
 from tactile_graph_likelihood.single.model import Likeliest, Model
 from tactile_graph_likelihood.single.readings import Readings
-
-LONE = 0.4
-"""Touched share of an element and its known neighbours below which that is a stray rather than an
-object's."""
 
 GROWN = 1.3
 """By how much a round outline is larger that goes on beyond the pad's edge."""
@@ -56,39 +48,6 @@ def _likelier(model: Model, readings: Readings, begin: Values, found: Likeliest)
     """Return the outline near a point, if it is likelier than what was found."""
     near = model.likeliest_near(readings, begin)
     return near if near.mode.height > found.mode.height else found
-
-
-def without_lone(readings: Readings) -> Readings | None:
-    """Return the readings with touched elements whose neighbours are bare unknown.
-
-    Parameters
-    ----------
-    readings : Readings
-
-    Returns
-    -------
-    Readings or None
-        None where no touched element is like that.
-
-    Notes
-    -----
-    Strays are anywhere, and moments count what is far away most. Of an object nearly all neighbours
-    are touched, too, even where four in ten of its elements read nothing.
-    """
-    shows, known = readings.shows, readings.states != UNKNOWN
-    lone = shows & (_around(shows) < LONE * _around(known))
-    if not lone.any():
-        return None
-    return readings.with_states(np.where(lone, np.uint8(UNKNOWN), readings.states))
-
-
-def _around(mask: NDArray[np.bool_]) -> Values:
-    """Return how many of an element and its eight neighbours are in a mask."""
-    wide = np.zeros((mask.shape[0] + 2, mask.shape[1] + 2))
-    wide[1:-1, 1:-1] = mask
-    rows = wide[:-2] + wide[1:-1] + wide[2:]
-    found: Values = rows[:, :-2] + rows[:, 1:-1] + rows[:, 2:]
-    return found
 
 
 def grown_beyond(kind: int, readings: Readings, p: Values) -> Values | None:

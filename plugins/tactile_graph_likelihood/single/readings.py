@@ -80,6 +80,10 @@ class Readings(NamedTuple):
         found = self._replace(states=states)
         return found._replace(touched=int(np.count_nonzero(found.shows)))
 
+    def without(self, elements: NDArray[np.bool_]) -> Readings:
+        """Return readings of which some elements say nothing."""
+        return self.with_states(np.where(elements, np.uint8(UNKNOWN), self.states))
+
 
 @compiled_later
 def split(values: Values, least: float, logs: Values, states: States) -> int:

@@ -28,32 +28,32 @@ def _geometric(p: Vector, x: Any, y: Any, n: int) -> Vector:
 
 def _foot(a: Any, b: Any, u: Any, v: Any) -> Any:
     """Return the parameter of the nearest point: found in doubles, settled in all digits."""
-    from mpmath import cos_sin, mpf
+    from mpmath import mpf
 
     fa, fb, fu, fv = float(a), float(b), float(u), float(v)
     starts = [math.atan2(fv / fb, fu / fa), math.atan2(fv * fa, fu * fb)]
     starts += [k * math.pi / 8 for k in range(16)]
     best = min(starts, key=lambda t: math.hypot(fu - fa * math.cos(t), fv - fb * math.sin(t)))
+    near = _settled(best, fa * fu, fb * fv, fa * fa - fb * fb, 0.01, 1e-14)
+    return _settled(mpf(near), a * u, b * v, a * a - b * b, mpf(1) / 100, SETTLED)
+
+
+def _settled(t: Any, au: Any, bv: Any, far: Any, otherwise: Any, enough: float) -> Any:
+    """Return the parameter of the nearest point by Newton's method, in the digits it is given in.
+
+    Steps are ``otherwise`` where there is no minimum near, and end below ``enough``.
+    """
+    from mpmath import cos_sin
+
     for _ in range(60):
-        step = _step(fa * fu, fb * fv, fa * fa - fb * fb, math.cos(best), math.sin(best), 0.01)
-        best -= step
-        if abs(step) < 1e-14:
-            break
-    t, au, bv, far = mpf(best), a * u, b * v, a * a - b * b
-    for _ in range(60):
-        c, s = cos_sin(t)
-        step = _step(au, bv, far, c, s, mpf(1) / 100)
+        c, s = (math.cos(t), math.sin(t)) if isinstance(t, float) else cos_sin(t)
+        slope = au * s - bv * c - far * s * c
+        bend = au * c + bv * s - far * (c * c - s * s)
+        step = slope / bend if bend > 0 else otherwise
         t -= step
-        if abs(step) < SETTLED:
+        if abs(step) < enough:
             break
     return t
-
-
-def _step(au: Any, bv: Any, far: Any, c: Any, s: Any, otherwise: Any) -> Any:
-    """Return a step of Newton's method to the nearest point; another where that is no minimum."""
-    slope = au * s - bv * c - far * s * c
-    bend = au * c + bv * s - far * (c * c - s * s)
-    return slope / bend if bend > 0 else otherwise
 
 
 def _direct(p: Vector, x: Any, y: Any, n: int) -> Vector:

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from tactile_graph_likelihood.any_pad import localise
+from tactile_graph_likelihood.any_pad.clump import without_lone
 from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse, LocateRectangle
 from tactile_graph_likelihood.any_pad.observed import observed
-from tactile_graph_likelihood.any_pad.second_climbs import grown_beyond, without_lone
+from tactile_graph_likelihood.any_pad.second_climbs import grown_beyond
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE
 from tactile_graph_likelihood.single.any_pressure import EVEN
 from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN
