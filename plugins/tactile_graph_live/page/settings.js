@@ -126,11 +126,16 @@ class Control {
     return input.value.trim() === "" || !Number.isFinite(number) ? undefined : number;
   }
 
-  /** Show what runs; not over the hand of who is just now dragging, unless that was refused. */
+  /** Show what runs; under the hand of who is just now dragging only later, unless that was refused. */
   take(setting, refused) {
     this.element.classList.toggle("changed", setting.changed);
     this.reset.disabled = !setting.changed;
-    if (!refused && performance.now() - this.touchedAt < HANDS_OFF_MS) return;
+    clearTimeout(this.later);
+    const handsOffMs = this.touchedAt + HANDS_OFF_MS - performance.now();
+    if (!refused && handsOffMs > 0) {
+      this.later = setTimeout(() => this.take(setting, false), handsOffMs);
+      return;
+    }
     for (const input of this.inputs) {
       if (input.type === "range") widen(input, setting);
       put(input, setting.value);

@@ -70,7 +70,7 @@ class Editor:
         self.trouble: Trouble | None = None
         self._lock = asyncio.Lock()
         self._answer: asyncio.Future[Swapped] | None = None
-        self._asked: tuple[Edited, float] | None = None
+        self._asked: dict[int, tuple[Edited, float]] = {}
         self._waiting: dict[tuple[str, str], Any] = {}
 
     @property
@@ -140,15 +140,15 @@ class Editor:
 
     def swapped(self, answer: Swapped) -> None:
         """Take the bench's answer, be it so late that nobody waits for it any more."""
-        if self._answer is None or answer.version != self._version:
-            return
-        if not self._answer.done():
-            self._answer.set_result(answer)
-        elif self._asked is not None and not answer.error:
-            self._runs(*self._asked, answer)
+        waiting = self._answer
+        if waiting is not None and not waiting.done() and answer.version == self._version:
+            waiting.set_result(answer)
+        elif answer.version in self._asked and not answer.error:
+            self._runs(*self._asked[answer.version], answer)
 
     def bench_died(self) -> None:
-        """Wait no more for its answer."""
+        """Wait no more for its answers."""
+        self._asked.clear()
         if self._answer is not None and not self._answer.done():
             died = "the process that runs the pipeline died of this change"
             self._answer.set_result(Swapped(self._version, died))
@@ -159,7 +159,7 @@ class Editor:
         restart = not draft.same_source(self.now.draft)
         self._swap(Swap(self._version, pickle.dumps(draft.pipeline), restart))
         edited = await unawaited(self._edited, draft, self._version)
-        self._asked = edited, began
+        self._asked[self._version] = edited, began
         answer = await self._answered(self._answer)
         if answer.error:
             self._tell((Fault(0, 0, answer.error),))
@@ -180,7 +180,7 @@ class Editor:
 
     def _runs(self, edited: Edited, began: float, answer: Swapped) -> None:
         """Take note that another pipeline runs."""
-        self._asked = None
+        self._asked = {v: asked for v, asked in self._asked.items() if v > answer.version}
         took_ms = round((time.perf_counter() - began) * 1e3, 1)
         graph = replace(edited.graph, took_ms=took_ms, anew=answer.anew)
         self.now = replace(edited, graph=graph)

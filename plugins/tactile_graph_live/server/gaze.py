@@ -47,16 +47,29 @@ class Gaze:
         self._after: int | None = None
         self._stepping = False
         self._newest: Picture | None = None
+        self._early: Picture | None = None
         self._lock = asyncio.Lock()
         self.paused = False
         self.shown: Picture | None = None
 
     def came(self, picture: Picture) -> None:
-        """Take a frame that ran just now; it is shown if the newest is looked at."""
-        self._newest = picture
+        """Take a frame that ran just now; it is shown if the newest is looked at.
+
+        One of a graph that the viewers were not told of yet waits for `told`.
+        """
+        if picture.frame.version > self._lookback().version:
+            self._early = picture
+            return
+        self._newest, self._early = picture, None
         if not self.paused or self._stepping:
             self._stepping = False
             self._show(picture)
+
+    def told(self) -> None:
+        """Go on with the graph that the viewers were just told of."""
+        if self._early is not None:
+            self.came(self._early)
+        self.again()
 
     def pause(self) -> None:
         """Keep looking at this frame."""

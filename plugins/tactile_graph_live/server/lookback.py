@@ -27,6 +27,7 @@ class Lookback:
     """
 
     def __init__(self, pipeline: Pipeline, version: int, seed: int) -> None:
+        self.version = version
         self._pipeline, self._seed = pipeline, seed
         self._photographer = Photographer(pipeline, version)
         self.lead = LEAD if make_plan(pipeline, tuple(pipeline.outputs)).stateful else 0

@@ -259,7 +259,7 @@ class Session:
     def _changed(self, edited: Edited) -> None:
         self.viewers.tell(self._hello())
         self.viewers.tell(edited.graph)
-        self._gaze.again()
+        self._gaze.told()
 
     def _tell(self, text: str, level: Level = "note") -> None:
         self._say(text, level)

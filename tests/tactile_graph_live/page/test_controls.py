@@ -172,6 +172,7 @@ def test_dragging_is_not_fought_by_answers(page: Any, double: Double) -> None:
     double.say(changed_graph())
     page.wait_for_selector("#yaml li.changed")
     assert slider.input_value() == "0.09"
+    wait_for(lambda: slider.input_value() == "0.05", "what runs is shown once the hand is off")
 
 
 def test_a_node_is_shown_large_with_its_settings(page: Any, double: Double) -> None:

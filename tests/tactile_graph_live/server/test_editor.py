@@ -137,6 +137,21 @@ def test_one_that_takes_long_is_told_of_and_runs_when_it_is_ready(
     assert len(desk.changes) == 1
 
 
+def test_one_that_took_too_long_runs_though_another_was_refused_since(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "SLOW_S", 0.01)
+    monkeypatch.setattr(module, "SWAP_S", 0.05)
+    desk.answer = lambda swap: None
+    desk.play(lambda: desk.editor.set("footprint", "level_v", 0.02))
+    (late,) = desk.swaps
+    desk.answer = lambda swap: Swapped(swap.version, "takes 8 x 8 cells")
+    desk.play(lambda: desk.editor.set("footprint", "level_v", 0.03))
+    desk.editor.swapped(Swapped(late.version))
+    assert desk.level_v() == 0.02
+    assert [edited.graph.version for edited in desk.changes] == [2]
+
+
 def test_a_bench_that_dies_of_a_change_is_not_waited_for(desk: Desk) -> None:
     desk.answer = lambda swap: asyncio.get_running_loop().call_soon(desk.editor.bench_died)
     desk.play(lambda: desk.editor.set("footprint", "level_v", 0.02))

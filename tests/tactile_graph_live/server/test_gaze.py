@@ -19,8 +19,8 @@ from tactile_graph_live.server.gaze import Gaze
 from tactile_graph_live.server.viewers import Picture
 
 
-def shown_frame(index: int) -> messages.Frame:
-    return messages.Frame(index, None, 1, {"low": 0, "high": 1}, [], {}, {}, [], {}, [], None)
+def shown_frame(index: int, version: int = 1) -> messages.Frame:
+    return messages.Frame(index, None, version, {"low": 0, "high": 1}, [], {}, {}, [], {}, [], None)
 
 
 def kept(ticket: int, index: int, newer: bool = False) -> wire.Kept:
@@ -33,6 +33,7 @@ class Room:
 
     shown = frozenset({"circle"})
     lead = 30
+    version = 1
 
     def __init__(self, holds: bool) -> None:
         self.told: list[wire.ToBench] = []
@@ -80,6 +81,30 @@ def test_the_newest_is_shown_until_it_is_held(room: Room) -> None:
     assert room.seen == [1, 2]
     room.gaze.live()
     assert room.seen == [1, 2, 3]
+
+
+def test_a_frame_waits_until_its_graph_is_told_of(room: Room) -> None:
+    """A page that drew it would draw nodes it does not know."""
+    room.came(1)
+    room.gaze.came(Picture(shown_frame(2, version=2)))
+    room.gaze.live()
+    assert room.seen == [1, 1]
+    room.version = 2
+    room.gaze.told()
+    assert room.seen == [1, 1, 2]
+    room.gaze.told()
+    room.came(3)  # one of the old graph that was under way
+    assert room.seen == [1, 1, 2, 3]
+
+
+def test_the_next_frame_is_shown_once_its_graph_is_told_of(room: Room) -> None:
+    room.gaze.step()
+    room.gaze.came(Picture(shown_frame(1, version=2)))
+    assert room.seen == []
+    room.version = 2
+    room.gaze.told()
+    room.came(2)
+    assert room.seen == [1]
 
 
 def test_only_what_is_played_is_held_as_well() -> None:
