@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from tactile_graph_likelihood.any_pad.turn_on import contrast_by, edge_of
+from tactile_graph_likelihood.any_pad.turn_on import contrast_by, edge_of, straightened
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
 from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.element_terms import ON, OVER
@@ -76,13 +76,21 @@ def contrast_of(told: Noise, log_sigma: float, readings: Readings, law: float = 
     Notes
     -----
     Readings that scatter more or less than told may do so since gains do, or since the law's
-    exponent is another. Where readings begin tells which (`contrast_by`), if that is seen.
+    exponent is another. Where readings begin tells which (`contrast_by`), if that is seen: by the
+    told law or, as far as its bend is improbable, by that without.
     """
     if law <= 0.0:
         return 1.0
     other = math.log(_freed(log_sigma, readings.touched) / told.sigma)
-    edge = edge_of(readings)
-    return 1.0 + law * other if edge is None else contrast_by(other, edge, readings.touched)
+    if (edge := edge_of(readings)) is not None:
+        return contrast_by(other, edge, readings.touched)
+    unseen, turn_on = 1.0 + law * other, readings.turn_on
+    if turn_on is None or turn_on.chance >= 1.0:
+        return unseen
+    if (edge := edge_of(straightened(readings, 1.0))) is None:
+        return unseen
+    straight = contrast_by(other, edge, readings.touched)
+    return turn_on.chance * unseen + (1.0 - turn_on.chance) * straight
 
 
 def _freed(log_sigma: float, touched: int) -> float:

@@ -27,10 +27,10 @@ SURE = 0.02
 LEAST_STD = 0.1
 """Of ln load: no turn-on is known better."""
 
-OTHER = 0.2
+OTHER = (0.3, 0.2, 0.2)
 """Probability that exponent, gains or turn-on are quite other than told, each for itself."""
 
-AS_IS, AS_ELSE = (0.1, 0.1, 0.1), (0.3, 0.4, 1.0)
+AS_IS, AS_ELSE = (0.07, 0.07, 0.1), (0.3, 0.4, 1.5)
 """Deviations of the logarithms of exponent, sigma and turn-on as told, and of others."""
 
 
@@ -71,19 +71,28 @@ def unbent(readings: Readings) -> tuple[Readings, float] | None:
 
 
 def straightened(readings: Readings, share: float) -> Readings:
-    """Return readings as by a law with so much less of a told bend below its turn-on."""
+    """Return readings as by a law with so much less of what is left of a bend below its turn-on."""
     turn_on = readings.turn_on
-    if turn_on is None:
+    if turn_on is None or turn_on.bend <= 0.0:
         return readings
-    less, first = share * turn_on.bend, turn_on.log_load
-    least_log, hidden = readings.least_log, turn_on.hidden
-    if least_log is not None:
-        least_log -= less * min(least_log - first, 0.0) ** 2
-    hidden -= less * min(hidden - first, 0.0) ** 2
+    first, left = turn_on.log_load, (1.0 - share) * turn_on.bend
+    taken = turn_on.bend / turn_on.chance - turn_on.bend
+    more = share * turn_on.bend
+
+    def straight(logs: Values) -> Values:
+        low = np.minimum(logs - first, 0.0)
+        told = low if taken <= 0.0 else (1.0 - np.sqrt(1.0 - 4.0 * taken * low)) / (2.0 * taken)
+        return logs - more * told**2
+
+    least_log = readings.least_log
     return readings._replace(
-        logs=readings.logs - less * np.minimum(readings.logs - first, 0.0) ** 2,
-        least_log=least_log,
-        turn_on=turn_on._replace(bend=turn_on.bend - less, hidden=hidden),
+        logs=straight(readings.logs),
+        least_log=None if least_log is None else float(straight(np.array(least_log))),
+        turn_on=turn_on._replace(
+            bend=left,
+            hidden=float(straight(np.array(turn_on.hidden))),
+            chance=turn_on.chance * (1.0 - share),
+        ),
     )
 
 
@@ -182,7 +191,7 @@ def _worlds() -> Values:
     """Return probability and variances of what is as told and what is not, in all ways, (8, 4)."""
     found = []
     for other in product((False, True), repeat=3):
-        weight = math.prod(OTHER if its else 1.0 - OTHER for its in other)
+        weight = math.prod(p if its else 1.0 - p for p, its in zip(OTHER, other, strict=True))
         stds = [AS_ELSE[k] if its else AS_IS[k] for k, its in enumerate(other)]
         found.append((weight, stds[0] ** 2, stds[1] ** 2, stds[2] ** 2))
     return np.array(found)

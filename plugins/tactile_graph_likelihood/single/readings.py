@@ -38,12 +38,15 @@ class TurnOn(NamedTuple):
         How far the turn-on lies below the load by which the law is known.
     hidden : float
         The load that noise hides on most elements.
+    chance : float
+        Probability of the told bend, as far as readings were looked at for it.
     """
 
     log_load: float
     bend: float
     arm: float
     hidden: float
+    chance: float = 1.0
 
 
 class Readings(NamedTuple):

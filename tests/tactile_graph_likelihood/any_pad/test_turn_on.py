@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.from_frame import contrast_of
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.any_pad.turn_on import (
     Edge,
@@ -17,6 +18,7 @@ from tactile_graph_likelihood.any_pad.turn_on import (
     unbent,
 )
 from tactile_graph_likelihood.single.element_terms import ON, UNDER
+from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_pads.pad import Pad, load_pad
 
 PAD = load_pad("thesis")
@@ -73,6 +75,10 @@ def test_half_a_bend_lies_between() -> None:
     assert (half.logs[low] < bent.logs[low]).all()
     assert edge_of(half) is None
     assert edge_of(straight) is not None
+    again = straightened(half, 1.0)
+    np.testing.assert_allclose(again.logs, straight.logs, atol=1e-12)
+    assert again.turn_on == pytest.approx(straight.turn_on)
+    assert again.least_log == pytest.approx(straight.least_log)
 
 
 def test_where_nothing_reads_less_than_the_turn_on_the_law_is_as_told() -> None:
@@ -105,6 +111,17 @@ def test_what_is_not_as_told_is_found(exponent: float, gains: float, turn_on: fl
     off = ARM - exponent * (ARM - math.log(turn_on))
     found = contrast_by(math.log(exponent * gains), Edge(off, 0.1, ARM), 80)
     assert found == pytest.approx(exponent, abs=0.07)
+
+
+def test_a_bend_in_doubt_counts_for_as_much_as_it_is_probable() -> None:
+    """Readings go on below the told turn-on: by a law without a bend they tell its exponent."""
+    bent, noise, log_sigma = observed(frame(5.0), PAD), Noise(), math.log(0.7)
+    told, straight, partly = (
+        contrast_of(noise, log_sigma, straightened(bent, share) if share else bent)
+        for share in (0.0, 1.0, 0.75)
+    )
+    assert 1.0 < told < straight < 1.5
+    assert partly == pytest.approx(0.25 * told + 0.75 * straight)
 
 
 def test_what_cannot_be_an_edge_is_no_error() -> None:
