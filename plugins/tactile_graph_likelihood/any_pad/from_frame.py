@@ -6,7 +6,12 @@ import math
 
 import numpy as np
 
-from tactile_graph_likelihood.any_pad.turn_on import contrast_by, edge_of, straightened
+from tactile_graph_likelihood.any_pad.turn_on import (
+    contrast_by,
+    edge_of,
+    log_density_of_gains,
+    straightened,
+)
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
 from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.element_terms import ON, OVER
@@ -16,6 +21,12 @@ from tactile_graph_likelihood.single.readings import Readings
 
 LAW = 0.35
 """Of ln sigma that is not as told, the share that is the law's exponent, not the gains'."""
+
+EVENED, EVENED_STD = -0.3, 0.17
+"""What foam, which spreads loads that are uneven, adds to ln sigma, and its deviation."""
+
+MOST_TOLD = 6.0
+"""Nats that readings' scatter may say for or against foam."""
 
 FITTED = 3.0
 """Numbers of an outline, by which fewer residuals than readings are free."""
@@ -91,6 +102,21 @@ def contrast_of(told: Noise, log_sigma: float, readings: Readings, law: float = 
         return unseen
     straight = contrast_by(other, edge, readings.touched)
     return turn_on.chance * unseen + (1.0 - turn_on.chance) * straight
+
+
+def evened_by_foam(by_foam: float, by_face: float, touched: int) -> float:
+    """Return by how much readings' scatter makes foam more probable than a round face.
+
+    Parameters
+    ----------
+    by_foam, by_face : float
+        Ln sigma of a fit under foam, and of a round face, over the told one.
+    touched : int
+        Readings that tell it.
+    """
+    foam = log_density_of_gains(by_foam - EVENED, touched, EVENED_STD)
+    found = foam - log_density_of_gains(by_face, touched)
+    return math.exp(min(max(found, -MOST_TOLD), MOST_TOLD))
 
 
 def _freed(log_sigma: float, touched: int) -> float:

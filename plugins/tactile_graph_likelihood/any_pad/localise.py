@@ -13,6 +13,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.from_frame import (
     LAW,
     contrast_of,
+    evened_by_foam,
     is_partly_hidden,
     learned,
     strays_beyond,
@@ -54,6 +55,7 @@ from tactile_graph_likelihood.single.any_pressure import (
     CLEAR,
     EVEN,
     FIRST,
+    FOAM_ODDS,
     WIDER,
     Pattern,
     asked_by,
@@ -315,7 +317,8 @@ class AnyPad:
         """Return the posterior around the most likely outlines, over all pressures."""
         # A pressure is told by all of a face: elements count for as much less along both axes.
         shared = shared_by(tops.values(), readings.touched) ** 2
-        logs = log_chances(tops, shared, readings.touched)
+        odds = FOAM_ODDS * self._foam_by_scatter(tops, readings.touched)
+        logs = log_chances(tops, shared, readings.touched, odds)
         best = max(logs, key=logs.__getitem__)
         shares = {part: math.exp(log - logs[best]) for part, log in logs.items()}
         found = {best: self._looked_at(best, readings, tops[best])}
@@ -338,6 +341,14 @@ class AnyPad:
             return whole
         whole = resized(whole, UNSEEN * unseen_share(tops[EVEN].fit.fall))
         return whole if self._reaches_beyond(readings, tops[best]) else evenly_spread(whole)
+
+    def _foam_by_scatter(self, tops: Mapping[str, Likeliest], touched: int) -> float:
+        """Return by how much readings' scatter makes foam more probable than a round face."""
+        if "fall" not in tops or FOAM not in tops:
+            return 1.0
+        told = math.log(self.told.noise.sigma)
+        by_foam, by_face = (float(tops[part].mode.p[-2]) - told for part in (FOAM, "fall"))
+        return evened_by_foam(by_foam, by_face, touched)
 
     def _wider(self, part: str) -> float:
         """Return by how much the variance under a pressure is larger than that of its fit."""
@@ -454,12 +465,16 @@ def shared_by(tops: Iterable[Likeliest], touched: int) -> float:
     return min(variance_inflation(top.fit.neighbours, touched) for top in tops)
 
 
-def log_chances(tops: Mapping[str, Likeliest], shared: float, touched: int) -> dict[str, float]:
+def log_chances(
+    tops: Mapping[str, Likeliest], shared: float, touched: int, foam_odds: float = FOAM_ODDS
+) -> dict[str, float]:
     """Return the log probability of each pressure with its fit, up to a constant.
 
     Evidence takes elements for independent; it is worth as many times less as they are ``shared``.
+    ``foam_odds`` as in `chances`.
     """
     before = {EVEN: 1.0}
     if len(tops) > 1:
-        before = chances({part: top.fit for part, top in tops.items() if part != EVEN}, touched)
+        others = {part: top.fit for part, top in tops.items() if part != EVEN}
+        before = chances(others, touched, foam_odds)
     return {part: top.evidence / shared + log_of(before[part]) for part, top in tops.items()}

@@ -187,6 +187,24 @@ def mean_over(
     return mean / total if total > 0.0 else 0.0
 
 
+def log_density_of_gains(log_sigma: float, touched: int, beside: float = 0.0) -> float:
+    """Return the log density of a fit's ln sigma over the told one, by what is told of gains.
+
+    Parameters
+    ----------
+    log_sigma : float
+    touched : int
+        Readings that tell it.
+    beside : float
+        Deviation that something else adds.
+    """
+    total = 0.0
+    for weight, own in ((1.0 - OTHER[1], AS_IS[1]), (OTHER[1], AS_ELSE[1])):
+        variance = own * own + beside * beside + 0.5 / max(touched, 1)
+        total += weight * math.exp(-0.5 * log_sigma**2 / variance) / math.sqrt(variance)
+    return math.log(max(total, 1e-300))
+
+
 def _worlds() -> Values:
     """Return probability and variances of what is as told and what is not, in all ways, (8, 4)."""
     found = []

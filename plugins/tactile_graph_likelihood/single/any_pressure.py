@@ -150,7 +150,9 @@ def asked_by(
 
 
 def chances(
-    others: Mapping[str, Posterior | GoodnessOfFit | None], touched: int = SHARED_BY
+    others: Mapping[str, Posterior | GoodnessOfFit | None],
+    touched: int = SHARED_BY,
+    foam_odds: float = FOAM_ODDS,
 ) -> dict[str, float]:
     """Return the probability of each pressure before the loads' evidence is heard.
 
@@ -161,10 +163,12 @@ def chances(
         alike neighbours are once the fall is explained; None where nobody knows.
     touched : int
         Elements that read a load.
+    foam_odds : float
+        Of foam over a round face, before neighbours are looked at.
     """
     found = {"lean": LEAN} if "lean" in others else {}
     if "fall" in others and "foam" in others:
-        log_odds = math.log(FOAM_ODDS)
+        log_odds = math.log(foam_odds)
         if (fall := others["fall"]) is not None:
             log_odds += 0.5 * fall.neighbours**2
             shared = SHARED * math.sqrt(min(touched / SHARED_BY, 1.0))

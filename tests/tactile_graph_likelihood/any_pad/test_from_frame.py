@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tactile_graph_likelihood.any_pad.from_frame import is_partly_hidden
+from tactile_graph_likelihood.any_pad.from_frame import evened_by_foam, is_partly_hidden
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE
 from tactile_graph_likelihood.single.readings import Readings
 
@@ -20,3 +20,18 @@ def test_an_outline_is_hidden_from_half_a_pitch_beyond_the_edge(x: float, hidden
 
 def test_a_disc_tells_by_its_rim_where_it_ends() -> None:
     assert not is_partly_hidden(DISC, PAD, np.array([1.0, 10.0, 5.0, 4.0]))
+
+
+def test_readings_that_scatter_less_than_told_speak_for_foam() -> None:
+    """A round face leaves gains as they are; foam evens out what presses unevenly."""
+    found = [evened_by_foam(log_sigma, log_sigma, 80) for log_sigma in (-0.3, -0.15, 0.0)]
+    assert found == sorted(found, reverse=True)
+    assert found[0] > 4.0
+    assert found[-1] < 0.25
+    assert found[0] > evened_by_foam(-0.3, -0.3, 8) > 1.0  # few readings say less
+
+
+def test_on_a_pad_of_far_other_gains_scatter_says_little_of_foam() -> None:
+    assert 1.0 / 12.0 < evened_by_foam(-0.9, -0.9, 80) < 12.0
+    assert 1.0 / 12.0 < evened_by_foam(0.6, 0.6, 80) < 12.0
+    assert 0.0 < evened_by_foam(9.0, -9.0, 0) < 1e9
