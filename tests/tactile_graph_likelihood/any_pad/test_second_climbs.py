@@ -116,7 +116,7 @@ def searched(kind, shape, pads):
     ("kind", "shape", "pads", "least", "ratio"),
     [
         ("over the edge", "disc", 20, 5, 0.85),
-        ("over the edge", "ellipse", 40, 5, 0.98),
+        ("over the edge", "ellipse", 40, 5, 0.99),
     ],
 )
 def test_what_the_edge_cuts_off_is_looked_for_beyond_it(
