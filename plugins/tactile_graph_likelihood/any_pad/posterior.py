@@ -20,7 +20,7 @@ VAGUE, STRANGE = 3.5, -6.0
 """Times the usual deviation from which on an answer counts as vague, and the surprise from which on
 readings count as none of the model's: above it they are those of good answers beside strays."""
 
-DISC_EVENLY, EVENLY = 4.0, 2.0
+DISC_EVENLY, EVENLY = 8.0, 2.0
 """Independent points that one of a disc's evenly spread points is worth, and of a rectangle's; of a
 rectangle that reaches beyond the pad's edge, and of other outlines, one."""
 
