@@ -35,7 +35,7 @@ LEAST_SIGMA, LEAST_VOIDS, MOST_VOIDS = 0.05, 1e-3, 0.9
 """What a model is held to: no pad is more even than this, and each element may fail."""
 
 DEVIATIONS = 5.0  # of the converter's noise that hardly any element of a frame exceeds
-SPREADS = {SIGMA: 0.4, VOIDS: 0.8, FOAM: 0.7, FALL: 0.3, LEAN_X: 0.7, LEAN_Y: 0.7, CONTRAST: 0.2}
+SPREADS = {SIGMA: 0.4, VOIDS: 0.8, FOAM: 0.7, FALL: 0.3, LEAN_X: 0.7, LEAN_Y: 0.7, CONTRAST: 0.15}
 """Standard deviations of ln sigma, the voids' log odds, ln foam, of the pressure's fall and lean
 (see `load_shares`) and of the contrast, before a frame is read."""
 
