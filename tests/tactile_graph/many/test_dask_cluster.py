@@ -20,15 +20,22 @@ pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
 pytestmark = pytest.mark.slow
 CLUSTER = """
 import sys
+import threading
 
 import dask
 from distributed import LocalCluster
 
-dask.config.set({"distributed.scheduler.allowed-failures": 0})
+dask.config.set({
+    "distributed.scheduler.allowed-failures": 0, "distributed.deploy.lost-worker-timeout": "2s",
+})
 if __name__ == "__main__":
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         print(cluster.scheduler_address, flush=True)
-        sys.stdin.read()
+        reading = threading.Thread(target=sys.stdin.read, daemon=True)
+        reading.start()
+        while reading.is_alive():
+            reading.join(1.0)
+            cluster.scale(2)  # on a busy machine a worker may die as it is started anew
 """
 BUSY = """
 import sys, time
