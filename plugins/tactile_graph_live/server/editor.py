@@ -70,7 +70,7 @@ class Editor:
         self.trouble: Trouble | None = None
         self._lock = asyncio.Lock()
         self._answer: asyncio.Future[Swapped] | None = None
-        self._asked: dict[int, tuple[Edited, float]] = {}
+        self._late: dict[int, tuple[Edited, float]] = {}
         self._waiting: dict[tuple[str, str], Any] = {}
 
     @property
@@ -143,12 +143,12 @@ class Editor:
         waiting = self._answer
         if waiting is not None and not waiting.done() and answer.version == self._version:
             waiting.set_result(answer)
-        elif answer.version in self._asked and not answer.error:
-            self._runs(*self._asked[answer.version], answer)
+        elif (late := self._late.pop(answer.version, None)) is not None and not answer.error:
+            self._runs(*late, answer)
 
     def bench_died(self) -> None:
         """Wait no more for its answers."""
-        self._asked.clear()
+        self._late.clear()
         if self._answer is not None and not self._answer.done():
             died = "the process that runs the pipeline died of this change"
             self._answer.set_result(Swapped(self._version, died))
@@ -159,8 +159,9 @@ class Editor:
         restart = not draft.same_source(self.now.draft)
         self._swap(Swap(self._version, pickle.dumps(draft.pipeline), restart))
         edited = await unawaited(self._edited, draft, self._version)
-        self._asked[self._version] = edited, began
         answer = await self._answered(self._answer)
+        if self._answer.cancelled():
+            self._late[self._version] = edited, began
         if answer.error:
             self._tell((Fault(0, 0, answer.error),))
         else:
@@ -180,7 +181,6 @@ class Editor:
 
     def _runs(self, edited: Edited, began: float, answer: Swapped) -> None:
         """Take note that another pipeline runs."""
-        self._asked = {v: asked for v, asked in self._asked.items() if v > answer.version}
         took_ms = round((time.perf_counter() - began) * 1e3, 1)
         graph = replace(edited.graph, took_ms=took_ms, anew=answer.anew)
         self.now = replace(edited, graph=graph)
