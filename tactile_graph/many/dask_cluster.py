@@ -45,7 +45,7 @@ def opened(address: str, n_workers: int | None) -> Opened:
         client.close(timeout=PATIENCE_S)
 
     n = there if n_workers is None else min(n_workers, there)
-    return Opened(executor, n, end, (BrokenExecutor, KilledWorker))
+    return Opened(executor, n, end, (BrokenExecutor, KilledWorker), lambda: len(client.nthreads()))
 
 
 DASK = ExecutorKind("a Dask cluster", opened, ("tcp", "tls", "ucx", "ws", "wss"))

@@ -28,12 +28,16 @@ class Opened(NamedTuple):
     died : tuple of type
         What a call's future raises when the process died that was at it. A `BrokenExecutor` means
         that the executor itself is of no use any more: another is opened.
+    n_there : callable, optional
+        Says how many workers there are right now, where they come and go by themselves: who waits
+        for one is told.
     """
 
     executor: Executor
     n_workers: int
     end: Callable[[], None]
     died: tuple[type[BaseException], ...] = (BrokenExecutor,)
+    n_there: Callable[[], int] | None = None
 
 
 class ExecutorKind(NamedTuple):

@@ -7,6 +7,7 @@ workers die each time is found by halving, told, and left out.
 
 from __future__ import annotations
 
+import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Future
@@ -14,6 +15,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from tactile_graph.errors import DataError
+from tactile_graph.foreign_text import visible
 from tactile_graph.many.executor_kind import Opened, Place
 from tactile_graph.many.portion import Portion
 
@@ -165,6 +167,7 @@ class InOrder(Generic[Done]):
             If the executor takes no work any more and says nothing of what it was given, or has
             cancelled it.
         """
+        told = False
         while True:
             try:
                 return future.result(timeout=PATIENCE_S)
@@ -175,8 +178,17 @@ class InOrder(Generic[Done]):
                     return future.result()
             try:
                 self._at_work().executor.submit(int)
+                alone = self._is_without_workers()
             except BROKE as error:
                 raise BrokenExecutor(str(error)) from error
+            if alone and not told:
+                tell(f"{self._place.kind.called}: there is no worker; waiting for one")
+            told = alone
+
+    def _is_without_workers(self) -> bool:
+        """Return whether an executor whose workers come and go has none."""
+        n_there = self._at_work().n_there
+        return n_there is not None and n_there() == 0
 
     def _mend(self, death: BaseException) -> None:
         """Open another executor where this one broke, and submit again what was lost with it."""
@@ -251,6 +263,12 @@ class InOrder(Generic[Done]):
                 if isinstance(death, BrokenExecutor):
                     self._end()
                 return False, None
+
+
+def tell(text: str) -> None:
+    """Say a line on stderr, whatever command waits."""
+    sys.stderr.write(visible(text) + "\n")
+    sys.stderr.flush()
 
 
 def _has_result(future: Future[Any]) -> bool:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from helpers_many import ran, ran_here, surroundings, write_plugin
+from helpers_many import command, ran, ran_here, surroundings, write_plugin
 from tactile_graph.errors import UsageError
 from tactile_graph.many.executor_kind import place_of
 
@@ -36,6 +36,17 @@ if __name__ == "__main__":
         while reading.is_alive():
             reading.join(1.0)
             cluster.scale(2)  # on a busy machine a worker may die as it is started anew
+"""
+NOBODY = """
+import sys
+from distributed import LocalCluster
+
+if __name__ == "__main__":
+    with LocalCluster(n_workers=0, threads_per_worker=1, dashboard_address=None) as cluster:
+        print(cluster.scheduler_address, flush=True)
+        sys.stdin.readline()
+        cluster.scale(1)
+        sys.stdin.read()
 """
 BUSY = """
 import sys, time
@@ -111,6 +122,26 @@ def test_an_overloaded_scheduler_is_waited_for(folder: Path, address: str) -> No
     assert "600 frames" in said
     assert time.monotonic() - begun < 240
     ended(others)
+
+
+def test_a_cluster_without_workers_is_waited_for_and_told(folder: Path) -> None:
+    cluster = started(folder, NOBODY)
+    assert cluster.stdout is not None
+    assert cluster.stdin is not None
+    words = command("run", "circle-1", "a.zarr", "-o", "late.csv", "--on")
+    run = subprocess.Popen(
+        [*words, cluster.stdout.readline().strip()], cwd=folder, env=surroundings(folder),
+        stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert run.stderr is not None
+    assert run.stderr.readline() == "a Dask cluster: there is no worker; waiting for one\n"
+    cluster.stdin.write("now\n")
+    cluster.stdin.flush()
+    said = run.communicate(timeout=240)[1]
+    assert run.returncode == 0
+    assert "600 frames" in said
+    assert "waiting" not in said
+    ended(cluster)
 
 
 def test_a_frame_of_which_the_clusters_workers_die_is_left_out(folder: Path, address: str) -> None:

@@ -157,6 +157,30 @@ def test_who_waits_long_asks_again_and_waits_on(monkeypatch: pytest.MonkeyPatch)
     assert raised.value is times_out
 
 
+def test_who_waits_for_workers_that_are_not_there_is_told_once_each_time(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(in_order, "PATIENCE_S", 0.01)
+    there = [0, 0, 1, 0, 2, 2, 2, 2]
+    asked, go_on = list[int](), Event()
+
+    def n_there() -> int:
+        asked.append(there[len(asked)] if len(asked) < len(there) else 2)
+        if len(asked) >= len(there):
+            go_on.set()
+        return asked[-1]
+
+    def work(given: bytes, portion: Portion) -> list[int]:
+        assert go_on.wait(60)
+        return frames(given, portion)
+
+    pool = ThreadPoolExecutor(2)
+    kind = ExecutorKind("a farm", lambda a, n: Opened(pool, 2, pool.shutdown, n_there=n_there))
+    with InOrder(Place(kind, "", 2), work, b"", [].append) as workers:
+        assert [k for _, got in workers.results(portions(2)) for k in got] == list(range(20))
+    assert capsys.readouterr().err == "a farm: there is no worker; waiting for one\n" * 2
+
+
 def test_an_error_of_the_work_is_raised_in_its_turn() -> None:
     def broken(given: bytes, portion: Portion) -> list[int]:
         if portion.low == 30:
