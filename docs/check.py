@@ -1,12 +1,11 @@
 """Check the documentation: docstrings, doctests, links, commands, lengths, and every block run.
 
-Run with ``python docs/check.py``; exits with 1 and says what is wrong. ``--words`` tells instead
-how many words of each kind there are; ``--site-beside`` leaves to the building of the site what
-that does in any case, which is to run the tutorial. What else is made then is checked by that.
+Run with ``python docs/check.py``; exits with 1 and says what is wrong.
 """
 
 from __future__ import annotations
 
+import argparse
 import ast
 import dataclasses
 import doctest
@@ -185,13 +184,23 @@ def _command(page: Path, line: str, cli: object) -> Iterator[str]:
 
 def main() -> int:
     """Run every check; return the exit code."""
-    if "--words" in sys.argv:
+    parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0])
+    parser.add_argument(
+        "--words", action="store_true",
+        help="tell instead how many words of each kind of page there are",
+    )  # fmt: skip
+    parser.add_argument(
+        "--site-beside", action="store_true",
+        help="leave the tutorial to the building of the site, which runs it in any case",
+    )  # fmt: skip
+    asked = parser.parse_args()
+    if asked.words:
         for kind, (read, every) in by_kind(DOCS, pages()[3:]).items():
             print(f"{kind:12} {read:6} words to read, {every:6} with tables and blocks")
         return 0
     checks = (links, commands, lengths)
     found = [text for page in pages() for check in checks for text in check(page)]
-    first = [] if "--site-beside" in sys.argv else [tutorial]
+    first = [] if asked.site_beside else [tutorial]
     with ProcessPoolExecutor(SHARES, get_context("spawn")) as pool:
         waiting = [pool.submit(one) for one in first]
         waiting += [pool.submit(blocks, page) for page in guides()]

@@ -26,21 +26,21 @@ def attacked(script: str, *words: str) -> None:
 
 def test_no_store_is_silently_wrong_or_short_and_no_kill_loses_one() -> None:
     pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
-    attacked("stores.py", "--tries", "40", "--killed", "12")
+    attacked("stores.py", "--tries", "24", "--killed", "6")
 
 
 def test_signals_leave_whole_files() -> None:
     pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
-    attacked("signals.py", "--tries", "6")
+    attacked("signals.py", "--tries", "4")
 
 
 def test_killed_commands_leave_whole_files() -> None:
     pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
-    attacked("kills.py", "--tries", "8", "--only", "learn", "import", "calibrate", "images")
+    attacked("kills.py", "--tries", "4", "--only", "learn", "import", "calibrate", "images")
 
 
 def test_interrupted_workers_end_soon_and_leave_nothing() -> None:
-    attacked("interrupts.py", "--tries", "6", "--seed", "11", "--latest", "3")
+    attacked("interrupts.py", "--tries", "4", "--seed", "11", "--latest", "3")
 
 
 def test_plugins_that_misbehave_cost_only_themselves() -> None:
@@ -48,7 +48,7 @@ def test_plugins_that_misbehave_cost_only_themselves() -> None:
 
 
 def test_no_port_gives_a_misaligned_frame_as_good_and_all_lock_again() -> None:
-    attacked("ports.py", "--frames", "256")
+    attacked("ports.py", "--frames", "128")
 
 
 def test_damaged_databases_are_refused_or_read_as_they_were() -> None:
@@ -56,12 +56,12 @@ def test_damaged_databases_are_refused_or_read_as_they_were() -> None:
 
 
 def test_damaged_pipelines_pads_presets_and_scenes_are_refused_in_words() -> None:
-    attacked("pipelines.py", "--tries", "300")
+    attacked("pipelines.py", "--tries", "200")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="measures memory as Linux tells it")
 def test_files_that_ask_for_too_much_are_refused_before_the_work() -> None:
-    attacked("files.py", "--tries", "12")
+    attacked("files.py", "--tries", "8")
 
 
 def test_hostile_frames_are_answered_or_refused() -> None:
@@ -71,4 +71,4 @@ def test_hostile_frames_are_answered_or_refused() -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="looks for processes where Linux tells them")
 def test_killed_runs_with_workers_are_resumed_to_the_same_file() -> None:
     pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
-    attacked("workers.py", "--tries", "4", "--kills", "2", "--frames", "2000", "--nice", "0")
+    attacked("workers.py", "--tries", "2", "--kills", "2", "--frames", "2000", "--nice", "0")

@@ -23,6 +23,7 @@ def test_pads_that_report_are_of_other_kinds_than_those_that_choose() -> None:
     assert set(tuned.SEEN) | set(tuned.UNSEEN) == set(tuned.KINDS)
 
 
+@pytest.mark.slow
 def test_the_parts_of_a_stream_are_as_many_and_count_for_what_they_stand_for() -> None:
     frames = tuned.stream_parts("noise 1 mV", 60, 3) + tuned.streamed(60, 3)
     empty = [f for f in frames if not f.truth]

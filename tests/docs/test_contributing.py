@@ -81,6 +81,7 @@ def test_the_step_shown_is_a_step_and_does_what_it_says() -> None:
     assert step(image, most=1.5).values.tolist() == [[0.5, 1.5]]
 
 
+@pytest.mark.slow
 def test_the_pipeline_shown_runs(tmp_path: Path) -> None:
     results = list(load(written(tmp_path, "yaml pipeline")).stream())
     assert len(results) == 6

@@ -124,6 +124,7 @@ def test_a_unit_stands_over_every_column_whose_name_ends_in_it(plugin: Plugin) -
     assert [(c.field, c.unit) for c in columns.values] == [("mean", "mmHg"), ("peak", "mmHg")]
 
 
+@pytest.mark.slow
 def test_a_shape_of_ones_own_has_errors_in_run_and_compare(plugin: Plugin) -> None:
     found = plugin("Shapes of your own")
     pipeline = loads(STROKES, registry=found)
@@ -143,6 +144,7 @@ def test_a_shape_of_ones_own_has_errors_in_run_and_compare(plugin: Plugin) -> No
     assert "length 0.000 cm" in page(compared).replace("+", "")
 
 
+@pytest.mark.slow
 def test_a_shape_of_ones_own_is_drawn_in_strips_and_reports(plugin: Plugin) -> None:
     found = plugin("Shapes of your own")
     stroke = mypad().Stroke(1.0, 2.0, 4.0, 2.0)
@@ -159,6 +161,7 @@ def test_a_shape_of_ones_own_is_drawn_in_strips_and_reports(plugin: Plugin) -> N
     assert len(drawn.patches) == 1
 
 
+@pytest.mark.slow
 def test_a_format_is_recognised_read_and_written(plugin: Plugin, tmp_path: Path) -> None:
     plugin("Recordings, read and written")
     path = tmp_path / "any.name"
@@ -201,6 +204,7 @@ outputs: [many]
 """
 
 
+@pytest.mark.slow
 def test_a_section_stands_in_the_report_before_how_it_was_made(plugin: Plugin) -> None:
     found = plugin("Report sections")
     told = page(compare([loads(SILENT, registry=found)], n_frames=3))
@@ -221,6 +225,7 @@ def test_a_section_that_fails_says_so_in_its_place(
     assert "How it was made" in told
 
 
+@pytest.mark.slow
 def test_an_exporter_writes_what_a_run_comes_to(plugin: Plugin, tmp_path: Path) -> None:
     plugin("Exporters")
     target = tmp_path / "circles.md"
@@ -237,6 +242,7 @@ def test_an_exporter_writes_what_a_run_comes_to(plugin: Plugin, tmp_path: Path) 
     assert "did you mean 'md'?" in got.output
 
 
+@pytest.mark.slow
 def test_an_executor_is_named_by_on(plugin: Plugin, tmp_path: Path) -> None:
     plugin("Executors")
     one, two = tmp_path / "one.csv", tmp_path / "two.csv"
@@ -249,6 +255,7 @@ def test_an_executor_is_named_by_on(plugin: Plugin, tmp_path: Path) -> None:
     assert "did you mean 'threads'?" in got.output
 
 
+@pytest.mark.slow
 def test_a_device_is_listed_and_recorded_with(plugin: Plugin, tmp_path: Path) -> None:
     plugin("Capture devices")
     listed = CliRunner().invoke(cli, ["ports"])

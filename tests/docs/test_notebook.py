@@ -69,6 +69,7 @@ def test_every_cell_runs_prints_what_is_shown_and_shows_itself(
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_refusal_the_page_quotes_is_the_one_that_inspect_gives(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -27,6 +27,7 @@ def test_a_step_lives_in_a_file_of_its_name_and_its_signature_can_be_read(name):
     assert (signature.kind is Kind.CLASS and signature.stateful) == (name in STATEFUL)
 
 
+@pytest.mark.slow
 def test_importing_all_filters_imports_nothing_heavy():
     modules = sorted({home.partition(":")[0] for home in STEPS.values()})
     code = f"import sys\nfor m in {modules}: __import__(m)\n" + (

@@ -25,6 +25,7 @@ def allowed(fit):
     return 1e-5 if fit.__name__ == "fit_circle_thesis" else 1e-10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fit", ALL_FITS)
 @settings(max_examples=40, deadline=None)
 @given(seed=seeds, dx=st.floats(-1e3, 1e3), dy=st.floats(-1e3, 1e3))
@@ -35,6 +36,7 @@ def test_moved_points_move_the_circle(fit, seed, dx, dy):
     assert moved == pytest.approx(three(fit(Points(xy))), abs=10 * allowed(fit))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fit", ALL_FITS)
 @settings(max_examples=40, deadline=None)
 @given(seed=seeds, angle=st.floats(0.0, 2.0 * math.pi))
@@ -47,6 +49,7 @@ def test_turned_points_turn_the_circle(fit, seed, angle):
     assert three(fit(Points(xy @ turn))) == pytest.approx(expected, abs=10 * allowed(fit))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fit", ALL_FITS)
 @settings(max_examples=40, deadline=None)
 @given(seed=seeds, power=st.floats(-9.0, 9.0))
@@ -57,6 +60,7 @@ def test_scaled_points_scale_the_circle(fit, seed, power):
     assert scaled == pytest.approx(three(fit(Points(xy))), abs=10 * allowed(fit))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fit", ALL_FITS)
 @settings(max_examples=40, deadline=None)
 @given(seed=seeds)

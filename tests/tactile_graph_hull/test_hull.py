@@ -148,6 +148,7 @@ def test_dense_circle_far_out_keeps_its_shape():
     assert corners.area_cm2 == pytest.approx(math.pi, rel=1e-6)
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(xy=arrays(np.float64, st.tuples(st.integers(1, 25), st.just(2)), elements=st.floats(-9, 9)))
 def test_any_floats_agree_and_order_does_not_matter(xy):

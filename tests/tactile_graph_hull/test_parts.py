@@ -14,6 +14,7 @@ from tactile_graph.wires import Mask
 from tactile_graph_hull.parts import n_parts, several_parts
 
 
+@pytest.mark.slow
 @given(
     on=arrays(
         np.bool_,
@@ -49,6 +50,7 @@ def discs(*centres: tuple[int, int]) -> Frame:
 ONE, TWO = discs((11, 12)), discs((5, 6), (17, 16))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "node"),
     [("circle-1", "boundary"), ("circle-2", "boundary"), ("circle-3", "boundary"),

@@ -28,6 +28,7 @@ def test_neighbouring_doubles_on_the_diagonal_are_told_apart(form):
             assert form(*a, 12.0, 12.0, 24.0, 24.0) == exact_turn(a, (12.0, 12.0), (24.0, 24.0))
 
 
+@pytest.mark.slow
 @form
 def test_nearly_and_exactly_collinear_triples_are_exact(form):
     rng = np.random.default_rng(5)

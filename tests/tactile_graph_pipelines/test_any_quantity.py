@@ -53,6 +53,7 @@ def loaded(name: str) -> Pipeline:
     return load(name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "quantity",
     [pytest.param(q, marks=[pytest.mark.slow] if q in ("gram", "counts") else []) for q in PEAKS],
@@ -113,6 +114,7 @@ def test_a_circle_lies_where_the_disc_does_whatever_the_unit(
     assert circle.radius_cm == pytest.approx(0.28 * min(shape), abs=0.8)
 
 
+@pytest.mark.slow
 def test_a_plain_npz_runs_and_is_learned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     for n in range(4):

@@ -78,6 +78,7 @@ def test_read_at_1_cm_a_cell_the_second_evolution_errs_less_than_the_first_as_in
         assert after[0] == pytest.approx(before[0], rel=0.1)
 
 
+@pytest.mark.slow
 def test_the_pre_filter_of_rectangle_2_fills_a_lost_element_which_one_pass_does_not() -> None:
     cells = {(r, c) for r in range(5, 11) for c in range(3, 13)} - {(7, 6)}
     frame = touched(*cells)

@@ -72,6 +72,7 @@ def test_frames_of_which_no_cell_is_valid_are_no_damage(tmp_path: Path) -> None:
     assert (index, report.troubles) == ([0, 1, 2, 3], [])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "how"),
     [
@@ -216,6 +217,7 @@ def without_copies(store: Path) -> None:
     file.write_bytes(b"\n".join([head, *lines, b""]))
 
 
+@pytest.mark.slow
 def test_each_line_of_the_journal_vouches_for_the_grid(store: Path) -> None:
     damage_head_and_grid(store)
     frames = list(read_store(store))

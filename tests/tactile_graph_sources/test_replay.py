@@ -51,6 +51,7 @@ def test_frames_come_at_their_time_divided_by_the_speed(path: Path) -> None:
     assert [f.time_s for f in got] == [0.0, 0.1, 0.2, 10.2, 10.3]
 
 
+@pytest.mark.slow
 def test_long_pauses_may_be_cut(path: Path) -> None:
     _, seconds = took(path=path, longest_pause_s=0.1)
     assert 0.4 <= seconds < 8.0

@@ -300,6 +300,7 @@ def test_a_pad_that_must_be_started_is_asked_again_when_it_missed_it(
     assert asked == [b"go", b"go"]
 
 
+@pytest.mark.slow
 def test_a_socket_is_a_port_too(opened: threading.Event) -> None:
     """Its in_waiting is 0 or 1, however much has come."""
     frames = encoded(FLEXITAC, 200)

@@ -84,6 +84,7 @@ def test_invalid_cells_truth_and_labels_are_kept(tmp_path: Path) -> None:
     assert all(same(a, b) for a, b in zip(written, read, strict=True))
 
 
+@pytest.mark.slow
 def test_a_recording_is_gone_on_with(tmp_path: Path) -> None:
     """The frames are numbered on, and the first of them follows a gap."""
     path = tmp_path / "a.zarr"

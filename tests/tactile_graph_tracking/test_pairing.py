@@ -31,6 +31,7 @@ costs = st.tuples(st.integers(1, 3), st.integers(1, 3)).flatmap(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @given(costs)
 def test_no_other_pairing_is_cheaper_and_nobody_is_paired_twice(cost):

@@ -130,6 +130,7 @@ def test_the_order_of_contacts_within_a_frame_changes_nothing(story, random):
         ]
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(st.lists(st.tuples(spots, st.sampled_from([None, 0.0, -1.0, 0.02, 1.0, 1e4])), max_size=10))
 def test_whatever_comes_every_contact_has_one_id_and_all_is_finite(story):

@@ -253,6 +253,7 @@ def test_the_files_name_decides_the_graphs_format(hand_made, name, start):
     assert f"wrote {name}" in got.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "start"),
     [("g.png", b"\x89PNG"), pytest.param("g.pdf", b"%PDF", marks=pytest.mark.slow)],

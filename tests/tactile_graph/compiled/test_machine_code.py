@@ -75,6 +75,7 @@ def test_a_kernel_serves_python_and_other_kernels_alike(fresh: Any, tmp_path: Pa
     assert kept(tmp_path) == {"helpers_kernels.spread", "helpers_kernels.summed"}
 
 
+@pytest.mark.slow
 def test_the_next_run_loads_what_was_kept_and_can_raise(fresh: Any) -> None:
     fresh().spread.compiled(VALUES)
     again = fresh().spread.compiled
@@ -234,6 +235,7 @@ def test_numbas_own_functions_serve_entries_and_others_alike() -> None:
         alone(VALUES[:3])
 
 
+@pytest.mark.slow
 def test_direct_calls_answer_as_calls_do_before_and_after_machine_code(
     fresh: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -80,6 +80,7 @@ def test_pauses_are_cut_and_untimed_frames_shown_alike_and_both_said(tmp_path: P
     assert pictures(tmp_path / "b.gif")[1] == pytest.approx([0.1, 0.1])
 
 
+@pytest.mark.slow
 def test_what_was_found_and_what_is_true_are_drawn_over_every_picture(tmp_path: Path) -> None:
     filmed([*discs(2), empty_frame(7)], tmp_path / "a.gif")
     (first, second, empty), _ = pictures(tmp_path / "a.gif")
@@ -93,6 +94,7 @@ def test_what_was_found_and_what_is_true_are_drawn_over_every_picture(tmp_path: 
     assert told.sum() > 200, "the dashed line and its halo"
 
 
+@pytest.mark.slow
 def test_colours_mean_the_same_in_all_pictures(tmp_path: Path) -> None:
     faint, strong = (Frame.of(np.full((6, 6), level), quantity="volt") for level in (1.0, 4.0))
     filmed([faint, strong], tmp_path / "a.gif")
@@ -128,6 +130,7 @@ def test_a_film_that_breaks_off_leaves_the_old_one_and_nothing_else(
     assert old.read_bytes() == b"old"
 
 
+@pytest.mark.slow
 def test_mp4_repeats_pictures_as_long_as_they_last(tmp_path: Path) -> None:
     library = pytest.importorskip("imageio_ffmpeg", reason="the 'film' extra is not installed")
     filmed(timed([0.0, 0.2, 0.6]), tmp_path / "a.mp4")

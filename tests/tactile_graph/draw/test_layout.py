@@ -105,6 +105,7 @@ def test_every_wire_goes_from_left_to_right_and_keeps_off_the_boxes(
     assert not crossed(placed)
 
 
+@pytest.mark.slow
 @given(graphs())
 @settings(max_examples=30, deadline=None)
 def test_everything_lies_within_the_drawing(

@@ -33,6 +33,7 @@ def test_shows_the_words_boxes_and_lines_of_the_svg(make) -> None:
     assert sum(isinstance(p, PathPatch) for p in patches) == len(lines)
 
 
+@pytest.mark.slow
 def test_every_line_of_text_lies_within_its_box_in_matplotlibs_own_font() -> None:
     figure = graph_figure(branched())
     axes = figure.axes[0]

@@ -75,6 +75,7 @@ def strip(results) -> Figure:
     return strip_figure(results)
 
 
+@pytest.mark.slow
 def test_one_row_a_frame_and_one_column_a_node(strip) -> None:
     assert titles(strip) == [
         "frame", "footprint\n(threshold)", "fine\n(subdivide)", "eroded\n(erode)",
@@ -85,6 +86,7 @@ def test_one_row_a_frame_and_one_column_a_node(strip) -> None:
     assert rows == ["frame 0 0 s", "frame 1 0.04 s", "frame 7"]
 
 
+@pytest.mark.slow
 def test_rows_and_columns_stand_in_a_grid(strip) -> None:
     boxes = np.array([a.get_position().bounds for a in cells(strip)]).reshape(3, 8, 4)
     assert np.allclose(boxes[:, :, 0], boxes[:1, :, 0])
@@ -110,6 +112,7 @@ def test_a_cell_keeps_the_shape_of_the_pad() -> None:
     assert box.width * width / (box.height * height) == pytest.approx(8.0 / 2.0)
 
 
+@pytest.mark.slow
 def test_the_legend_tells_found_from_true(strip) -> None:
     assert legend(strip) == ["found", "true"]
     unknown = circle_demo().run(next(discs(1, truth=False)))
@@ -209,6 +212,7 @@ def test_a_plugins_own_type_is_drawn_by_its_outline() -> None:
     assert outline.tolist() == [[10.4, 9.4], [11.4, 10.4], [10.4, 11.4], [9.4, 10.4], [10.4, 9.4]]
 
 
+@pytest.mark.slow
 def test_numbers_are_printed_as_text() -> None:
     result = branched().run(two_discs(), only=["areas", "circle.radius_cm"])
     figure = strip_figure([result], ["areas", "circle.radius_cm"])
@@ -236,6 +240,7 @@ def test_what_was_found_off_the_pad_is_said_to_be_there() -> None:
     assert cells(figure)[0].get_xlim() == pytest.approx((0.0, 20.8))
 
 
+@pytest.mark.slow
 def test_a_place_is_marked_and_its_numbers_are_printed() -> None:
     def centre(image: Image) -> Centre:
         """Return the middle."""
@@ -339,6 +344,7 @@ def test_a_write_that_fails_leaves_the_old_file_alone(
     assert [p.name for p in tmp_path.iterdir()] == ["strip.png"]
 
 
+@pytest.mark.slow
 def test_odd_names_are_drawn_as_they_are_and_warn_of_nothing() -> None:
     frame = Frame.of(np.eye(16), 1.3, quantity="volt", label="$x^{ 手 \\frac 🤚")
     text = CIRCLE.replace("circle-demo", "'$a_{ 手'")
@@ -365,6 +371,7 @@ def test_knows_no_window_and_leaves_no_figure_behind(results) -> None:
     assert n_figures() <= before
 
 
+@pytest.mark.slow
 def test_a_notebook_shows_a_result_by_its_picture(results) -> None:
     figure = results[0].picture("circle", "hull")
     assert titles(figure) == ["circle\n(fit_circle)", "hull"]

@@ -85,6 +85,7 @@ def test_mermaid_writes_what_it_would_read_as_its_own_by_number() -> None:
     assert "text = a #34;b#34; #92; #35;35;" in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", MAKERS)
 def test_dot_has_every_node_and_every_wire(make) -> None:
     pipeline = make()

@@ -71,6 +71,7 @@ CONTACTS = """\
 """
 
 
+@pytest.mark.slow
 def test_a_wired_value_takes_the_place_of_a_node_and_of_what_only_that_needs(
     tmp_path: Path,
 ) -> None:

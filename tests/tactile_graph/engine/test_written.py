@@ -63,6 +63,7 @@ def discs(n: int) -> list[Frame]:
     return [Frame.of(v, 1.3, (-0.15, -0.15), "volt", index=i) for i, v in enumerate(noisy)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     ["circle-1", "circle-3", "contacts", pytest.param("rectangle-3", marks=pytest.mark.slow)],

@@ -58,6 +58,7 @@ def test_settings_of_one_use_are_not_those_of_another(tmp_path: Path) -> None:
     assert [found[f"{k}/a"].settings.get("tag") for k in "mn"] == ["x", ""]
 
 
+@pytest.mark.slow
 def test_too_many_nodes_in_all_are_refused(tmp_path: Path, read_files: list[Path]) -> None:
     with pytest.raises(PipelineError, match=r"nodes with those of the pipelines it uses; allowed"):
         load(nested(tmp_path, 20, uses=2), registry())
@@ -99,6 +100,7 @@ def test_a_long_text_of_too_many_values_is_never_composed(
     assert composed == []
 
 
+@pytest.mark.slow
 def test_a_long_chain_of_pipelines_is_refused(tmp_path: Path) -> None:
     with pytest.raises(PipelineError, match=r"pipelines use each other more than 50 deep"):
         load(nested(tmp_path, 150), registry())

@@ -272,6 +272,7 @@ def test_names_are_those_of_nodes_not_of_functions() -> None:
     assert names_in("a >") == set()
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None, derandomize=True)
 @given(text=st.text(st.sampled_from("ab.()[]<>=!+-*/%'\", 01notandri\n"), max_size=30))
 def test_any_text_is_a_condition_or_told_to_be_none(text: str) -> None:

@@ -89,6 +89,7 @@ def pad(tmp_path: Path) -> str:
     return str(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", QUICK)
 def test_a_sample_of_them_does(name: str) -> None:
     report = examine_step(name, settings=SETTINGS.get(name))

@@ -179,6 +179,7 @@ outputs: [features, identity]
 """
 
 
+@pytest.mark.slow
 def test_frames_that_fail_make_the_exit_code_1_and_the_others_count():
     Path("p.yaml").write_text(UNGUARDED)
     scene = "scene={in_turn: [[{shape: disc, weight_g: 900, radius_cm: 4}], []]}"

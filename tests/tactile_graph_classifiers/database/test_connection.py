@@ -92,6 +92,7 @@ def killed(process: subprocess.Popen[str]) -> None:
     process.communicate()
 
 
+@pytest.mark.slow
 def test_a_writer_killed_within_a_lesson_leaves_the_lessons_before_it(tmp_path):
     path = tmp_path / "objects.sqlite"
     process = started(WRITER, path)

@@ -45,6 +45,7 @@ def examples(objects: dict[str, np.ndarray], names=NAMES) -> Examples:
     return Examples.of(load_known(export_of(objects, names), None))
 
 
+@pytest.mark.slow
 def test_known_objects_are_named_and_a_stranger_is_unknown():
     one = CanonicalDiscriminant(database=export_of(three_objects()))
     for name, at in {"light": (505, 41), "heavy": (1990, 38), "wide": (2010, 147)}.items():
@@ -79,6 +80,7 @@ def test_the_confidence_is_the_share_of_known_readings_that_is_accepted():
         assert np.mean(accepted) == pytest.approx(confidence, abs=0.05)
 
 
+@pytest.mark.slow
 def test_objects_that_were_not_learned_are_unknown():
     objects = many(12, seed=7)
     learned = dict(list(objects.items())[:9])
@@ -87,6 +89,7 @@ def test_objects_that_were_not_learned_are_unknown():
     assert np.mean([one(measured(row)).known for row in strangers]) < 0.1
 
 
+@pytest.mark.slow
 def test_with_two_objects_a_stranger_is_known_by_what_lies_beside_what_tells_them_apart():
     objects = many(2, seed=8)
     one = CanonicalDiscriminant(database=export_of(objects, NAMES))
@@ -108,6 +111,7 @@ def test_what_was_left_out_foretells_what_new_readings_get():
     assert 0 < choice.n_found <= choice.n_strangers == 300
 
 
+@pytest.mark.slow
 def test_features_that_say_nothing_or_never_vary_do_no_harm():
     rng = np.random.default_rng(0)
     objects = {

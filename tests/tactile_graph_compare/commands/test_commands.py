@@ -35,6 +35,7 @@ def test_people_get_tables_the_lineage_and_the_saving(hand_made):
     assert re.search(r"centre cm +discs", got.output)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [60, 80, 120])
 def test_tables_fit_the_terminal_and_say_what_they_leave_out(hand_made, width, monkeypatch):
     from click.testing import CliRunner

@@ -74,6 +74,7 @@ def test_it_holds_every_section_with_its_heading() -> None:
     assert links == [f"#{name}" for name in list(found)[1:]]
 
 
+@pytest.mark.slow
 def test_the_summary_names_the_best_of_each_quantity_and_the_fastest() -> None:
     c = both()
     cards = {card.one("h3").text: card for card in checked(c).all("article", "card")}
@@ -171,6 +172,7 @@ def test_pictures_hold_what_was_found_and_what_is_true() -> None:
     assert truth == pytest.approx(expected, abs=0.01)
 
 
+@pytest.mark.slow
 def test_lineage_tells_what_was_done_and_what_that_did() -> None:
     c = both()
     step = checked(c).one("section", id="lineage").one("article")
@@ -194,6 +196,7 @@ def test_the_timeline_has_a_bar_for_each_run_of_frames() -> None:
     assert marks == [f"#frame-{f.position}" for f in c.chosen]
 
 
+@pytest.mark.slow
 def test_it_says_how_to_make_it_again() -> None:
     c = both(source_settings={"empty": [0]}, seed=3)
     command = checked(c).one("section", id="making").one("pre", "command").text
@@ -304,6 +307,7 @@ def test_frames_that_give_nothing_at_all() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_steps_that_fail_or_give_no_number_leave_no_nan() -> None:
     crashing = loads(Path("discs.yaml").read_text().replace("{step: disc, in: footprint",
         "{step: disc, in: footprint, with: {fail_at_x: 1}").replace("discs", "crashing"),
@@ -321,6 +325,7 @@ def test_steps_that_fail_or_give_no_number_leave_no_nan() -> None:
     assert "no answer at all" in checked(replace(both(), scores=some)).text
 
 
+@pytest.mark.slow
 def test_values_that_are_not_finite_are_drawn_without() -> None:
     c = both(n_frames=3)
     frame = c.chosen[0]
@@ -350,6 +355,7 @@ def test_what_was_interrupted_says_so() -> None:
 # -- size and file -----------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_pictures_beyond_the_budget_are_left_out_and_counted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -85,6 +85,7 @@ def test_a_guard_that_never_stops_anything_costs_what_only_it_needs():
     assert guard.saved_us < 0.0
 
 
+@pytest.mark.slow
 def test_a_sample_is_seeded_and_takes_its_share():
     pipeline = loads(HANDED.replace("frames: 10", "frames: 200"))
     first, again = (audit(pipeline, sample=0.2, seed=3) for _ in range(2))

@@ -69,6 +69,7 @@ def test_objects_of_one_frame_count_as_one_frame():
     assert (got.mean, got.low, got.high, got.n_both) == (2.0, None, None, 2)
 
 
+@pytest.mark.slow
 def test_an_interval_holds_the_true_mean_about_as_often_as_it_says():
     rng = np.random.default_rng(4)
     held = 0

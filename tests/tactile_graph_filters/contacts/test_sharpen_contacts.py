@@ -64,6 +64,7 @@ def test_a_single_cell_is_a_smaller_cell_about_its_middle():
     assert sharpen_contacts(one.contacts, share=0.999, finer=2).contacts[0] is one.contacts[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("real", [True, False], ids=["real", "look-alike"])
 def test_on_a_capacitive_panel_the_areas_are_right_in_the_middle_and_none_is_missed(real, tmp_path):
     ratios = []

@@ -105,6 +105,7 @@ def test_opening_shrinks_closing_grows_and_both_are_done_once(mask, element, bor
         assert np.array_equal(Open(element=element)(opened).values, opened.values)
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(masks(), elements(), st.booleans())
 def test_dilation_is_the_erosion_of_the_complement(mask, element, border):

@@ -81,6 +81,7 @@ def test_machine_code_equals_plain_loops_and_the_reference() -> None:
             assert out.tolist() == again.tolist()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("columns", [1, 13, 32, 33])
 def test_each_cell_becomes_four(columns: int) -> None:
     mask = random_mask(columns, (6, columns))

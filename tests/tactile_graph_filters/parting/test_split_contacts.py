@@ -249,6 +249,7 @@ def calls_to_join(n):
     return pstats.Stats(profile).total_calls
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("plain_kernels")
 def test_plain_joining_takes_in_proportion_to_the_groups():
     """Far groups are told by their boxes, all at once, not pair by pair from the cells."""

@@ -137,6 +137,7 @@ def test_low_readings_along_the_cut_make_it_likelier():
     assert odds(SLAB, 5, values) > odds(SLAB, 5) + 0.5
 
 
+@pytest.mark.slow
 def test_one_group_of_two_objects_is_cut_and_two_groups_of_one_are_joined():
     assert sorted(recut(LOBES, groups_of(LOBES, 99))) in ([20, 21], [19, 22], [18, 23])
     assert recut(SLAB, groups_of(SLAB, 5)) == [SLAB.count]
@@ -161,6 +162,7 @@ def test_the_two_limits_say_how_willingly():
     assert len(recut(SLAB, groups_of(SLAB, 5), cut_above=50.0, join_below=-50.0)) == 2
 
 
+@pytest.mark.slow
 def test_no_piece_is_smaller_than_three_cells():
     rng = np.random.default_rng(4)
     mask = image_of(rng.random((9, 9))).mask(rng.random((9, 9)) < 0.6)

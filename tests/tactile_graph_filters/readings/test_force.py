@@ -129,6 +129,7 @@ def test_loads_below_the_floor_are_none_at_all():
     assert step(image).values == pytest.approx(np.array([[0.0, 6.0, 20.0]]))
 
 
+@pytest.mark.slow
 @given(arrays(np.float64, (4, 5)), st.floats(0, 100))
 def test_loads_below_the_floor_are_put_to_0_as_by_the_reference(grams, floor_g):
     pytest.importorskip("numba")

@@ -66,6 +66,7 @@ def test_what_is_no_number_is_refused(bad):
         LoadOf()(image_of([[bad, 1.0]]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("above", [0.0, -5.0, 0.7, 9.0])
 def test_it_measures_as_the_reference_does(above):
     pytest.importorskip("numba")

@@ -80,6 +80,7 @@ def test_what_is_no_recording_is_told(
         Threshold(level="auto", noise_of=noise_of)
 
 
+@pytest.mark.slow
 def test_it_belongs_to_auto_and_to_images_of_its_unit(recording: Path) -> None:
     with pytest.raises(ValueError, match="noise_of belongs to level: auto, got level 3"):
         Threshold(level=3, noise_of=recording)

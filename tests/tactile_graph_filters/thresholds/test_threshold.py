@@ -177,6 +177,7 @@ def test_the_level_must_be_finite():
         Threshold(level=math.nan)
 
 
+@pytest.mark.slow
 @given(arrays(np.float64, (5, 7)), st.floats(allow_nan=False))
 def test_it_compares_as_the_reference_does(values, level):
     pytest.importorskip("numba")

@@ -52,6 +52,7 @@ def test_an_unloaded_pad_is_degenerate():
         threshold_valley(image_of(np.zeros((4, 4))))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("most", [0, 1, 7, 1000])
 @pytest.mark.parametrize("seed", range(4))
 def test_the_twins_agree(seed, most):

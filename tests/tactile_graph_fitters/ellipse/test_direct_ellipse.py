@@ -41,6 +41,7 @@ def by_eigenvectors(uv):
     return [*centre, *np.sort(np.sqrt(level / np.linalg.eigvalsh(form)))[::-1]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [k for k in WELL if k != "far"])
 def test_it_is_the_eigenvector_of_halir_and_flusser(kind):
     for seed in range(60):
@@ -154,6 +155,7 @@ def test_it_is_flat_from_a_millionth_on(power):
     assert found[0] == (FLAT if 10.0**power < FLATTEST else OK)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [5, 10, 100, 10_000])
 @pytest.mark.parametrize(("offset", "scale"), [(0.0, 1.0), (1e6, 1.0), (0.0, 1e-200), (3.0, 1e200)])
 def test_few_points_and_many_far_away_and_of_any_size(n, offset, scale):

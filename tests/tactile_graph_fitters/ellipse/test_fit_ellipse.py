@@ -39,6 +39,7 @@ def test_truth_to_points_to_truth(fit, seed):
     assert got.rms_cm < 1e-7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fit", BOTH)
 @settings(max_examples=20, deadline=None)
 @given(seed=seeds, angle=st.floats(-3, 3), dx=st.floats(-1e3, 1e3), power=st.floats(-6, 6))
@@ -53,6 +54,7 @@ def test_moving_turning_and_scaling_the_points_does_the_same_to_the_ellipse(
     assert off_rad(there.angle_rad, here.angle_rad + angle) < 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fit", BOTH)
 @settings(max_examples=20, deadline=None)
 @given(seed=seeds)
@@ -75,6 +77,7 @@ def test_the_direct_fit_is_scikit_images_on_the_same_points():
         assert (got.semi_major_cm, got.semi_minor_cm) == pytest.approx(axes, abs=2e-4)
 
 
+@pytest.mark.slow
 def test_the_geometric_fit_has_the_least_distances():
     from skimage.measure import EllipseModel
 
@@ -170,6 +173,7 @@ def arc(rng: np.random.Generator, span_rad: float, std_cm: float) -> Points:
     return Points(xy + rng.normal(0.0, std_cm, xy.shape))
 
 
+@pytest.mark.slow
 def test_the_length_scatters_as_its_deviation_says() -> None:
     rng = np.random.default_rng(5)
     clouds = [arc(rng, 2 * math.pi, 0.05) for _ in range(60)]

@@ -35,6 +35,7 @@ def error_of_appendix_d(x, y, a, b):
     return total
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(seed=seeds)
 def test_truth_to_turned_points_to_truth(seed):
@@ -101,6 +102,7 @@ def test_an_ellipse_longer_across_turns_its_angle_by_a_quarter():
     assert off_rad(got.angle_rad, 0.2 + math.pi / 2) < 1e-12
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(seed=seeds, power=st.floats(-9.0, 9.0))
 def test_scaling_the_points_scales_the_ellipse(seed, power):

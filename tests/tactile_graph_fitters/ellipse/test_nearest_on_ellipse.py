@@ -23,6 +23,7 @@ def clouds():
         yield xy, a, b
 
 
+@pytest.mark.slow
 def test_all_at_once_are_as_one_at_a_time():
     for xy, a, b in clouds():
         c, s = feet.reference(xy, a, b)

@@ -119,6 +119,7 @@ def test_symmetric_equations_are_solved_or_declined():
     assert not solved.loops(normal, slope, 1e-12, step)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("plain_kernels")
 @pytest.mark.parametrize(
     ("kind", "seeds"),

@@ -44,6 +44,7 @@ def test_survives_the_break_that_turns_the_scatter_matrix_across():
     assert got.ambiguous or off_rad(got.angle_rad, 0.0) < math.radians(15)
 
 
+@pytest.mark.slow
 def test_random_voids_cost_less_than_they_cost_the_scatter_matrix():
     rng = np.random.default_rng(1)
     plain, robust = [], []

@@ -58,6 +58,7 @@ def test_turned_points_turn_the_rectangle(seed, angle):
     assert off_rad(there.angle_rad, here.angle_rad + angle) < 1e-3
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(seed=seeds, power=st.floats(-6.0, 6.0))
 def test_scaled_points_with_a_scaled_threshold_scale_the_rectangle(seed, power):
@@ -68,6 +69,7 @@ def test_scaled_points_with_a_scaled_threshold_scale_the_rectangle(seed, power):
     assert five(there) / scale == pytest.approx(five(here), abs=1e-3)
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(seed=seeds)
 def test_order_of_the_points_does_not_matter(seed):

@@ -28,6 +28,7 @@ def test_truth_to_points_to_truth(seed):
     assert got.misfit < 1e-9
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(seed=seeds)
 def test_no_angle_gives_a_smaller_box_and_all_points_are_inside(seed):

@@ -71,6 +71,7 @@ def test_a_rectangle_made_by_hand_has_no_points_and_a_certain_angle():
     assert (one.rms_cm, one.n_points, one.ambiguous) == (0.0, 0, False)
 
 
+@pytest.mark.slow
 def test_points_inside_the_outline_are_put_back():
     truth = Rectangle(1.0, 2.0, 12.0, 6.0, 0.3)
     shrunk = Rectangle(1.0, 2.0, 11.0, 5.0, 0.3)

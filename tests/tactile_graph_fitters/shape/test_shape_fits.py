@@ -68,6 +68,7 @@ def test_distances_from_sides_are_measured_to_the_nearest_side(kernel):
         assert found == pytest.approx(squared)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_every_shape_is_that_of_its_own_step(kernel):
     for corners in outlines():

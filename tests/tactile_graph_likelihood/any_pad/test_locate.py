@@ -183,6 +183,7 @@ def test_a_quick_rectangle_over_the_edge_says_how_little_is_known():
     assert fits <= 0.6
 
 
+@pytest.mark.slow
 @plain
 def test_a_quick_choice_has_no_sample():
     (frame,) = Bench(KINDS["noise 1 mV"], np.random.default_rng(3)).frames(1)
@@ -280,6 +281,7 @@ def test_readings_need_no_quantity_and_no_scale():
     assert found.fits
 
 
+@pytest.mark.slow
 @plain
 def test_cells_that_are_nearly_square_lie_where_they_lie():
     rng = np.random.default_rng(8)
@@ -310,6 +312,7 @@ def test_noise_alone_is_no_object():
     assert risen <= 3
 
 
+@pytest.mark.slow
 @plain
 def test_the_same_frame_has_the_same_answer():
     frame = next(iter(Bench(BASE, np.random.default_rng(6)).frames(1)))

@@ -40,6 +40,7 @@ def test_the_rate_is_the_normal_one_until_only_strays_are_left():
     assert hazard.call(TABLE, 12.0) < 1.0 < hazard.call(TABLE, 3.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("t", [8.0, T, 1.5])
 def test_orders_are_about_as_likely_as_lognormal_loads_make_them(t):
     rng = np.random.default_rng(1)

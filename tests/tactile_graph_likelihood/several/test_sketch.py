@@ -77,6 +77,7 @@ def test_one_sketch_beside_another_adds_what_both_together_do():
     assert log_posterior.call(problem, points, 0.65, both) == pytest.approx(sum(parts))
 
 
+@pytest.mark.slow
 def test_sketches_come_near_the_discs_that_lie_there():
     for seed in range(4):
         points = np.array([[7.0, 7.0, 0.6, 0.6, 0.0, 4.0], [10.4, 5.2, 0.6, 0.6, 0.0, 4.0]])

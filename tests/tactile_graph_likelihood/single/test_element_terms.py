@@ -33,6 +33,7 @@ def one(kernel, expected, log, state, noise=NOISE):
     return found + math.log(stray.get(state, 1.0 - noise[2]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("expected", [2.0, 6.0, 40.0, 500.0])
 def test_an_elements_readings_have_probability_one(kernel, expected):
     # The lognormal part above the least load, the stray part over its own range.

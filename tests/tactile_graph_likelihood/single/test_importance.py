@@ -18,6 +18,7 @@ def test_even_points_have_the_moments_of_students_t():
     np.testing.assert_allclose(np.cov(points.T), expected, atol=0.06)
 
 
+@pytest.mark.slow
 def test_even_points_are_more_even_than_random_ones():
     even = [np.tanh(even_points(64, 4, seed)).var(axis=0) for seed in range(40)]
     rng = np.random.default_rng(0)

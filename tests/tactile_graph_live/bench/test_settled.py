@@ -17,6 +17,7 @@ def as_before() -> Iterator[None]:
     gc.unfreeze()
 
 
+@pytest.mark.slow
 def test_what_is_there_is_frozen_once() -> None:
     settled = Settled()
     settled()

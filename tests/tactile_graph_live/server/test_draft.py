@@ -91,6 +91,7 @@ outputs: [cheap, middle, each_one]
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("node", "told"),
     [

@@ -107,6 +107,7 @@ def test_what_the_bench_refuses_is_told_and_the_old_graph_stays(desk: Desk) -> N
     assert desk.level_v() == 0.01
 
 
+@pytest.mark.slow
 def test_an_answer_to_an_older_change_is_not_taken_for_this_ones(desk: Desk) -> None:
     desk.answer = lambda swap: Swapped(swap.version - 1)
 

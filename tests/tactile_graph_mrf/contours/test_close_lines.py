@@ -87,6 +87,7 @@ def test_an_end_does_not_turn_back_to_its_own_line() -> None:
     assert same(close_lines(image, lines, longest=3), lines)
 
 
+@pytest.mark.slow
 @given(st.integers(0, 9999))
 def test_lines_are_only_added_and_twice_is_as_once(seed: int) -> None:
     rng = np.random.default_rng(seed)

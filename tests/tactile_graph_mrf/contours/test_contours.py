@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -43,6 +44,7 @@ def test_cells_that_touch_at_a_corner_have_contours_of_their_own() -> None:
     assert contours(Mask(np.zeros((2, 2), bool))) == ()
 
 
+@pytest.mark.slow
 @given(st.integers(1, 7), st.integers(1, 7), st.floats(0, 1), st.integers(0, 999))
 def test_contours_hold_all_cells_and_nothing_else(r: int, c: int, share: float, seed: int) -> None:
     on = np.random.default_rng(seed).random((r, c)) < share

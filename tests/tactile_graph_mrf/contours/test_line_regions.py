@@ -124,6 +124,7 @@ def regions_by_waves(
     return (np.searchsorted(np.unique(first), first) + 1).astype(np.int32)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("by", [plainly, compiled])
 @given(r=st.integers(1, 7), c=st.integers(1, 7), share=st.floats(0, 1), seed=st.integers(0, 999))
 def test_loops_part_as_the_reference_does(

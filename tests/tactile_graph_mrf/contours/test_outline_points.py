@@ -79,6 +79,7 @@ def test_covered_is_the_mean_of_an_even_share_given_its_logarithm(
     assert covered(log_share, spread) == pytest.approx(float(weight @ c / weight.sum()), rel=1e-3)
 
 
+@pytest.mark.slow
 @given(st.floats(-700, 700), st.floats(0, 4))
 def test_covered_is_a_share_and_rises_with_the_reading(log_share: float, spread: float) -> None:
     share = covered(log_share, spread)

@@ -149,6 +149,7 @@ def test_polishing_tells_the_energy_it_ends_with_and_agrees_compiled(lines, orde
     assert all(np.array_equal(a, b) for a, b in zip(*ends, strict=True))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_a_cut_of_a_grid_is_the_least_of_all_cuts(seed):
     rng = np.random.default_rng(seed)

@@ -37,6 +37,7 @@ def test_parabola_draws_share_out_even_numbers_as_the_density(n_levels, mean, na
     assert np.abs(counts - wanted * len(drawn)).max() <= 1.001
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mean", [3000.2, 4095.4, 0.0, 700.0])
 @pytest.mark.parametrize("narrow", [1e-3, 1e-5, 1e-6])
 def test_parabola_of_many_levels(mean, narrow):
@@ -63,6 +64,7 @@ def test_the_sum_of_all_weights_is_right(off, narrow, above, below):
     assert got == pytest.approx(wanted, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beta", [1e-12, 0.01, 1.0, 1e12])
 def test_cost_draws_share_out_even_numbers_as_the_density(beta):
     costs = np.random.default_rng(1).normal(size=37) * 30
@@ -72,6 +74,7 @@ def test_cost_draws_share_out_even_numbers_as_the_density(beta):
     assert np.abs(counts - chances(costs, beta) * N).max() <= 1.001
 
 
+@pytest.mark.slow
 def test_a_draw_is_sure_only_if_no_number_gives_another():
     kept = np.empty(2, np.int64)
     for gap in (1.0, 30.0, 36.0, 60.0):

@@ -143,6 +143,7 @@ def test_a_constant_image_and_an_empty_region_are_not_swept():
     assert (untouched.image.values == image.values).all()
 
 
+@pytest.mark.slow
 def test_outside_the_region_nothing_changes_and_inside_it_is_as_if_the_pad_ended_there():
     image = picture(8, 12)
     on = np.zeros((8, 12), np.bool_)
@@ -170,6 +171,7 @@ def test_annealing_stops_once_nothing_can_change_and_loses_nothing_by_it(monkeyp
     assert (blocks.image.values == stopped.image.values).all()
 
 
+@pytest.mark.slow
 def test_the_energy_scale_is_a_temperature():
     image = picture()
     scaled = restore(image, n_sweeps=20, temperature=500.0, energy_scale=100.0)

@@ -48,6 +48,7 @@ def test_readings_outside_the_range_have_a_stated_answer(kind: str) -> None:
     assert load[3] > 300.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @given(readings=arrays(np.float64, 12, elements=st.floats(allow_nan=True, allow_infinity=True)))
 @settings(max_examples=40)

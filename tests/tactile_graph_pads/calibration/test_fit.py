@@ -47,6 +47,7 @@ def test_isotonic_lines_pass_through_points_that_rise() -> None:
     assert found.points[0] == (0.0, 0.0)
 
 
+@pytest.mark.slow
 @given(st.lists(st.floats(0.01, 10.0), min_size=8, max_size=8))
 @settings(max_examples=60)
 def test_isotonic_lines_are_the_nearest_that_do_not_fall(readings: list[float]) -> None:

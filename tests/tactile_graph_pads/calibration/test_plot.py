@@ -48,6 +48,7 @@ def test_the_curve_drawn_is_the_curve_used() -> None:
     np.testing.assert_allclose(curve.grams_of(np.asarray(volts)).load_g, load)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", ["png", "svg", pytest.param("pdf", marks=pytest.mark.slow)])
 def test_it_is_written(tmp_path: Path, ending: str) -> None:
     save_calibration_plot(tmp_path / f"c.{ending}", made())

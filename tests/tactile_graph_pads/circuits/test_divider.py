@@ -18,6 +18,7 @@ CIRCUITS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("circuit", CIRCUITS)
 @pytest.mark.parametrize(("low", "high"), [(1.0, 1e12), (1.0, 1e3), (1e9, 1e12), (1e3, 1e6)])
 def test_it_measures_what_nodal_analysis_says_from_1_ohm_to_1_tohm(circuit, low, high):

@@ -93,6 +93,7 @@ def test_an_empty_recording_is_taken_off(tmp_path: Path) -> None:
     assert made.from_reading == pytest.approx(volts / pad.converter.step_v, abs=0.5)
 
 
+@pytest.mark.slow
 def test_it_draws_what_it_found(tmp_path: Path) -> None:
     run(one_file(tmp_path / "one.npz"), "--plot", tmp_path / "c.png")
     assert (tmp_path / "c.png").read_bytes().startswith(b"\x89PNG")
@@ -149,6 +150,7 @@ def test_swapped_loads_are_refused(tmp_path: Path) -> None:
     refused(DataError, "loads in disorder: .* were loads mixed up", *given)
 
 
+@pytest.mark.slow
 def test_saturated_loads_are_refused(tmp_path: Path) -> None:
     given = many_files(tmp_path, (*GRAMS, 20_000.0, 60_000.0))
     refused(DataError, "saturated: from 5000 to 15000 g an element", *given)

@@ -212,6 +212,7 @@ def test_too_few_frames_say_how_many_are_needed(tmp_path: Path) -> None:
     assert "too few frames to tell the empty pad without a recording of it: got 6" in said
 
 
+@pytest.mark.slow
 def test_recordings_of_different_pads_are_refused_by_name(tmp_path: Path) -> None:
     empty, _ = MadeUpPad().recorded(tmp_path)
     (tmp_path / "b").mkdir()

@@ -62,6 +62,7 @@ def test_a_convex_polygon_covers_what_cutting_it_leaves(corners):
         np.testing.assert_allclose(areas(corners, *GRID), expected, rtol=0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_disc_covers_what_fine_sampling_counts(ellipse):
     x, y, r, n = 9.3, 10.1, 5.1, 200
     inside = on_grid(
@@ -86,6 +87,7 @@ def test_a_polygon_that_is_not_convex_covers_the_sum_of_its_parts(polygon):
     np.testing.assert_allclose(polygon(notched, *GRID), expected, rtol=0, atol=1e-13)
 
 
+@pytest.mark.slow
 @given(st.floats(6, 18), st.floats(6, 18), st.floats(0.01, 5.9), st.floats(0.01, 5.9), angle)
 @settings(max_examples=40, deadline=None)
 def test_without_gaps_the_elements_add_up_to_the_area(x, y, a, b, angle_rad):
@@ -105,6 +107,7 @@ def test_a_shift_by_whole_pitches_shifts_the_coverage(x, y, a, b, angle_rad, rig
     np.testing.assert_allclose(other[5:-5, 5:-5], moved[5:-5, 5:-5], rtol=0, atol=1e-11)
 
 
+@pytest.mark.slow
 @given(place, place, half_axis, half_axis, angle, convex_polygons())
 @settings(max_examples=30, deadline=None)
 def test_a_mirrored_shape_has_the_mirrored_coverage(x, y, a, b, angle_rad, corners):

@@ -34,6 +34,7 @@ def test_the_nodes_shown_run_with_the_pad_that_was_written(tmp_path: Path) -> No
     assert result["grams"].total > 0.0
 
 
+@pytest.mark.slow
 def test_the_page_is_whole_and_names_stay_text(tmp_path: Path) -> None:
     empty, _ = MadeUpPad().recorded(tmp_path, n_objects=1)
     found = learn_pad(read_stack([(empty, None)]), None)
@@ -47,6 +48,7 @@ def test_the_page_is_whole_and_names_stay_text(tmp_path: Path) -> None:
     assert "<i>.yaml" in root.text
 
 
+@pytest.mark.slow
 def test_readings_that_are_all_the_same_are_drawn(tmp_path: Path) -> None:
     pad = MadeUpPad()
     empty, objects = pad.recorded(tmp_path, n_objects=3)

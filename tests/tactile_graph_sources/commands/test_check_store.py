@@ -35,6 +35,7 @@ def test_a_right_store_and_a_right_pipeline_are_told_side_by_side(store: Path) -
     assert "circle-1: right" in got.stdout
 
 
+@pytest.mark.slow
 def test_damage_is_named_and_mended(store: Path) -> None:
     (store / "time_s" / "zarr.json").unlink()
     got = check(store)

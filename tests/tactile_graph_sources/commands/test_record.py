@@ -97,6 +97,7 @@ def test_ctrl_c_keeps_what_was_recorded(
     assert len(list(read_store(tmp_path / "a.zarr"))) == 10
 
 
+@pytest.mark.slow
 def test_a_pad_that_falls_silent_ends_in_an_error_and_keeps_what_came(
     tmp_path: Path, pad: FakePad, sends
 ) -> None:
@@ -212,6 +213,7 @@ def test_a_pad_or_another_source_is_named(args: list[str], message: str, tmp_pat
     assert message in result.output
 
 
+@pytest.mark.slow
 def test_a_silent_pad_ends_in_time_and_is_told(tmp_path: Path, pad: FakePad) -> None:
     began = time.monotonic()
     result = run(pad, tmp_path / "a.zarr", "--seconds", "0.5")

@@ -67,6 +67,7 @@ def test_the_devices_own_time_is_kept_in_seconds(name: str) -> None:
     assert [d.device_time_s for d in got] == pytest.approx([kit.device_time(i) for i in range(5)])
 
 
+@pytest.mark.slow
 @every_kit
 @pytest.mark.parametrize("size", [1, 7])
 def test_chunks_change_nothing(kit: Kit, size: int) -> None:
@@ -85,6 +86,7 @@ def test_chunks_change_nothing(kit: Kit, size: int) -> None:
     assert len(got) >= 6
 
 
+@pytest.mark.slow
 @every_kit
 def test_a_lost_byte_lets_no_corrupt_frame_through(kit: Kit) -> None:
     """2 % of 1000 frames lose a byte; where the protocol can tell, none comes out wrong."""
@@ -109,6 +111,7 @@ def test_a_lost_byte_lets_no_corrupt_frame_through(kit: Kit) -> None:
         assert corrupt <= n_hit
 
 
+@pytest.mark.slow
 @every_stream
 def test_every_single_lost_byte_is_told(kit: Kit) -> None:
     """Whichever byte of a frame is lost, no other frame suffers but its neighbours."""
@@ -187,6 +190,7 @@ def held(kit: Kit, pad: Pad) -> Pad:
     return out
 
 
+@pytest.mark.slow
 def test_a_header_that_comes_with_a_scene_takes_the_phase_from_none() -> None:
     """However unlike the scene before it, and however like it another phase would be."""
     kit = BY_NAME["flexitac-16x32"]

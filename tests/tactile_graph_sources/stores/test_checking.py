@@ -110,6 +110,7 @@ def test_a_damaged_journal_is_written_anew_and_its_frames_stay_doubtful(store: P
     assert check(store, repair=True) == (ABOUT, (), ())
 
 
+@pytest.mark.slow
 def test_lost_frames_stay_told_as_lost(store: Path) -> None:
     """Mending neither brings them back nor hides that they were there."""
     (store / "values" / "c" / "2" / "0" / "0").unlink()
@@ -148,6 +149,7 @@ def test_what_a_killed_writer_left_is_swept_away(store: Path) -> None:
     assert len(plain(store)) == 10
 
 
+@pytest.mark.slow
 def test_frames_are_gone_on_with_after_mending(store: Path) -> None:
     (store / "time_s" / "zarr.json").unlink()
     check(store, repair=True)

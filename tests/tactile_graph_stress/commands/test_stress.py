@@ -39,6 +39,7 @@ def test_the_table_counts_what_cases_came_to(tmp_path):
     assert all(float(r["units"]) <= 10.0 for r in mine if r["outcome"] == "exact")
 
 
+@pytest.mark.slow
 def test_the_report_says_where_and_with_what_words_a_step_gives_up(tmp_path):
     path = tmp_path / "out.md"
     assert run("orientation", "-o", path).exit_code == 0

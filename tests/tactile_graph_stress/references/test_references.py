@@ -66,6 +66,7 @@ def test_kasa_is_what_fractions_give():
         assert abs(found.shape[1] - mpf(y.numerator) / y.denominator) < mpf(10) ** -48
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "fit",
     [

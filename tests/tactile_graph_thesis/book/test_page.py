@@ -118,6 +118,7 @@ def test_a_finding_that_nothing_refutes_is_none(nothing: str) -> None:
         Finding("up", "yes", nothing, True)
 
 
+@pytest.mark.slow
 def test_the_page_holds_everything_and_asks_for_nothing() -> None:
     text = page(
         made(),

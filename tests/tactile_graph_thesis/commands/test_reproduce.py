@@ -152,6 +152,7 @@ def test_a_folder_that_is_named_is_filled_too(tmp_path: Path) -> None:
     assert names == ["figure-2.13.csv", "figure-2.13.png", "figure-2.13.svg"]
 
 
+@pytest.mark.slow
 def test_the_seed_and_the_pad_decide_what_is_random() -> None:
     one, again, other, even = (
         run("bump", "--csv", "-", *more).stdout
@@ -161,6 +162,7 @@ def test_the_seed_and_the_pad_decide_what_is_random() -> None:
     assert len({one, other, even}) == 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("strict", "code"), [((), 0), (("--strict",), 1)])
 def test_a_conclusion_that_does_not_come_out_may_be_an_exit_code_of_1(
     tmp_path: Path, strict: tuple[str, ...], code: int

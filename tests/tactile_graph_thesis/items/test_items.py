@@ -103,6 +103,7 @@ def work() -> Work:
     return Work(seed=0, readings=20, quick=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [
@@ -152,6 +153,7 @@ def test_each_study_of_noise_comes_out(name: str, monkeypatch: pytest.MonkeyPatc
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [
@@ -176,6 +178,7 @@ def test_tables_stand_beside_the_thesis(name: str, work: Work) -> None:
             assert one.thesis is not None
 
 
+@pytest.mark.slow
 def test_the_convex_hull_betters_the_radius(work: Work) -> None:
     (outcome,) = outcomes(chosen(("table-4.5",)), work)
     assert outcome.made is not None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from tactile_graph import Mask
 from tactile_graph_pads.circuits import Floating
@@ -75,6 +76,7 @@ def test_squares_of_four_are_counted() -> None:
     assert thick_cells(Mask(ring)) == 0
 
 
+@pytest.mark.slow
 def test_a_broken_image_keeps_its_axis_unless_an_end_is_lost() -> None:
     found = broken()
     assert found.error_degree.shape[1:3] == (len(KINDS), len(LOST))
@@ -86,6 +88,7 @@ def test_a_broken_image_keeps_its_axis_unless_an_end_is_lost() -> None:
     assert gives_across(swapped).holds
 
 
+@pytest.mark.slow
 def test_lone_lines_cost_more_and_a_price_without_lines_meeting_refutes_it() -> None:
     found = pattern_costs()
     assert lone_cost_more(found).holds

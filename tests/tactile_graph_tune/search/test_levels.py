@@ -52,6 +52,7 @@ def test_dials_are_the_numbers_of_comparisons_and_of_what_an_or_joins() -> None:
     assert dials[2].turned(7.5).field == "(footprint.count > 4 or footprint.area_cm2 > 7.5)"
 
 
+@pytest.mark.slow
 def test_nothing_changes_but_numbers() -> None:
     its = tuned(WASTEFUL, most_error=9.0, most_missed=1.0, most_false=1.0)
     given, chosen = its.variants[0].given, its.chosen
@@ -127,6 +128,7 @@ def test_what_is_as_good_stays_and_the_rest_is_turned() -> None:
     assert kept(lambda choice: choice.chosen["touched"][0].level > 2.0) == [3.0, 7.0, 5.0]
 
 
+@pytest.mark.slow
 def test_limits_are_those_of_the_file_whatever_settings_are_chosen() -> None:
     heavy = LADDER.replace("level_v: 0.5", "level_v: 5").replace(", with: {fail_at_x: 1}", "")
     its = tuned(heavy, most_error=9.0, free=(Free("footprint.level_v", (0.5,)),))

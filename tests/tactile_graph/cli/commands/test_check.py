@@ -32,6 +32,7 @@ def test_a_file_is_checked_as_what_its_keys_say_it_is(lamps: Path) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_what_a_file_marks_free_is_told_with_its_values(hand_made: Path) -> None:
     text = (hand_made / "discs.yaml").read_text()
     marked = text.replace("with: {level_v: 0.5}", "free: {level_v: [0.25, 0.5]}")

@@ -64,6 +64,7 @@ def test_a_files_own_schema_is_a_schema_of_its_draft(mine: Path) -> None:
     jsonschema.Draft202012Validator.check_schema(json.loads(call("schema", "mine.yaml").stdout))
 
 
+@pytest.mark.slow
 def test_a_file_with_problems_completes_what_can_be_told(mine: Path) -> None:
     mine.write_text(MINE.replace("in: [frame, footprint]", "in: [frame, ftprint]"))
     made = json.loads(call("schema", "mine.yaml").stdout)
@@ -71,6 +72,7 @@ def test_a_file_with_problems_completes_what_can_be_told(mine: Path) -> None:
     assert {"footprint", "objects", "objects.contacts", "fits"} <= set(names)
 
 
+@pytest.mark.slow
 def test_only_the_chosen_steps_settings_and_ports_are_offered(shipped: dict[str, Any]) -> None:
     data = yaml.safe_load(MINE)
     settings = keys_offered(shipped, data, "nodes", "footprint", "with")
@@ -138,6 +140,7 @@ def test_install_again_takes_up_new_nodes_and_changes_nothing_else(mine: Path) -
     assert "more" in offered(made, yaml.safe_load(before), "outputs", 0)
 
 
+@pytest.mark.slow
 def test_line_ends_and_a_byte_order_mark_stay(mine: Path) -> None:
     mine.write_bytes(b"\xef\xbb\xbf" + MINE.replace("\n", "\r\n").encode())
     assert call("schema", "--install", "mine.yaml").exit_code == 0
@@ -159,6 +162,7 @@ def settings(text: str) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_settings_of_others_stay_as_they_are(mine: Path) -> None:
     path = settings('{\n  "editor.rulers": [100],\n  "yaml.schemas": {"a.json": "*.yml"}\n}\n')
     assert call("schema", "--install", "mine.yaml").exit_code == 0

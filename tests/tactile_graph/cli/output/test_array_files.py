@@ -30,6 +30,7 @@ def test_a_folder_takes_the_place_of_another_and_nothing_is_left_beside_it(
     assert [p.name for p in tmp_path.iterdir()] == ["a"]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not exchange two names")
 def test_at_no_moment_is_there_no_folder_of_that_name(tmp_path: Path) -> None:
     target, over, missed = folder(tmp_path / "a", "0"), threading.Event(), 0

@@ -64,6 +64,7 @@ def rows(folder: str = "results") -> dict[str, int]:
     return {row["values"]: row["counts"] for row in found.value_counts().to_pylist()}
 
 
+@pytest.mark.slow
 def test_each_recording_has_a_part_and_the_manifest_names_it() -> None:
     done = run("left.txt", "right.txt", frames=3)
     assert done.exit_code == 0, done.output
@@ -104,6 +105,7 @@ def test_hostile_names_come_back_as_they_are_or_by_the_manifest() -> None:
     assert {"007~", "__HIVE_DEFAULT_PARTITION__~"} <= set(found)
 
 
+@pytest.mark.slow
 @settings(max_examples=30)
 @given(st.lists(st.text(min_size=1, max_size=300), unique=True, max_size=4))
 def test_folders_of_any_names_differ_and_fit_every_file_system(names: list[str]) -> None:

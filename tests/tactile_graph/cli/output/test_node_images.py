@@ -81,6 +81,7 @@ def need(name: str) -> None:
     pytest.importorskip("h5py" if name.endswith(".h5") else "zarr")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FORMS)
 def test_stacks_hold_cells_places_and_times_and_tell_what_is_missing(name: str) -> None:
     need(name)

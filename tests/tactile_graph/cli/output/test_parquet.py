@@ -28,6 +28,7 @@ def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("many.yaml").write_text(FILE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", [(), ("--long",)], ids=["wide", "long"])
 def test_parquet_and_csv_hold_the_same_rows(form: tuple[str, ...]) -> None:
     pq = pytest.importorskip("pyarrow.parquet")

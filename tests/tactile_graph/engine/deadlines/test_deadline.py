@@ -375,6 +375,7 @@ def test_a_state_that_was_skipped_is_kept_and_told_the_true_gap() -> None:
     assert values[4] == (3, pytest.approx(0.4))
 
 
+@pytest.mark.slow
 def test_what_was_decided_gives_the_same_again_bit_for_bit() -> None:
     rng = np.random.default_rng(1)
     times = rng.lognormal(np.log(MS), 1.0, 300).astype(int).tolist()

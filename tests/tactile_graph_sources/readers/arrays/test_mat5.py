@@ -31,6 +31,7 @@ def oracle(content: bytes) -> dict[str, Any]:
     return {k: v for k, v in loaded.items() if not k.startswith("__")}
 
 
+@pytest.mark.slow
 @given(
     array=st.sampled_from(DTYPES).flatmap(
         lambda d: hnp.arrays(d, hnp.array_shapes(min_dims=2, max_dims=4, max_side=5))
@@ -91,6 +92,7 @@ def test_very_many_small_matrices_are_refused_before_they_are_looked_at(
         read(matlab(False, c=cells), tmp_path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("packed", [False, True])
 def test_any_byte_may_be_wrong_without_anything_but_damage_to_tell(
     packed: bool, tmp_path: Path

@@ -157,6 +157,7 @@ def test_emed_row_and_column_forces_are_the_vendors(real: bool, tmp_path: Path) 
     assert frames[3].time_s == pytest.approx(0.03)
 
 
+@pytest.mark.slow
 @REAL
 def test_capfingerid_keeps_stamps_and_labels_and_skips_the_damaged_line(
     real: bool, tmp_path: Path
@@ -207,6 +208,7 @@ def test_capcontact_truth_is_the_masks_contact(tmp_path: Path) -> None:
     assert first.area_cm2 + second.area_cm2 == pytest.approx(n_cells * 0.479 * 0.476 / 64)
 
 
+@pytest.mark.slow
 @REAL
 def test_capcontact_image_peaks_where_the_truth_lies(real: bool, tmp_path: Path) -> None:
     """The mask's grid begins at the image's corner: half a cell off would show as 0.24 cm."""

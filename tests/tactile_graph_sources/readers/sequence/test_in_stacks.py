@@ -55,6 +55,7 @@ def read(path: Path, in_stacks: bool, **settings: Any) -> tuple[list[Any], Repor
     return [*frames(0, report)], report
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", CHANGES)
 @pytest.mark.parametrize("n", [3, pytest.param(515, marks=pytest.mark.slow), 1100])
 def test_frames_and_what_is_said_of_them_are_the_same(

@@ -56,6 +56,7 @@ def test_what_the_thesis_concludes_comes_out(name: str) -> None:
         assert not missed, (seed, missed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

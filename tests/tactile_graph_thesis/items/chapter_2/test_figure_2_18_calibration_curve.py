@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from tactile_graph_pads.calibration.calibration import Polynomial
 from tactile_graph_pads.pad import load_pad
@@ -15,6 +16,7 @@ def curve(name: str) -> Curves:
     return curves(pad, group_readings(pad, np.random.default_rng(0)))
 
 
+@pytest.mark.slow
 def test_the_fifth_order_polynomial_is_within_the_error_bars() -> None:
     found = curve("thesis")
     polynomial = found.calibrations[0]

@@ -36,6 +36,7 @@ def test_without_decoupling_the_error_grows_with_area(pad: str, seed: int) -> No
     assert (np.diff(by_area) > 0.0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("pad", "seed"),
     [
@@ -51,6 +52,7 @@ def test_with_decoupling_that_growth_is_gone(pad: str, seed: int) -> None:
         assert np.ptp(size(found, values)) < 5.0
 
 
+@pytest.mark.slow
 def test_calibrated_by_sums_weights_come_out_right() -> None:
     found = weighed("thesis", 0)
     assert size(found, found.sums_g).max() < 5.0
@@ -65,6 +67,7 @@ def test_objects_stand_under_equal_pressures() -> None:
     np.testing.assert_allclose(found.weight_g / found.area_cm2[:, None], [PRESSURES_G_CM2] * 5)
 
 
+@pytest.mark.slow
 def test_at_one_weight_the_curve_without_decoupling_always_reads_too_little() -> None:
     found = weighed("plain", 0)
     assert (found.error_percent(found.coupled_g) < 0.0).all()

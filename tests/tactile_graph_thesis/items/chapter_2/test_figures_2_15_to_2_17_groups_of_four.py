@@ -50,6 +50,7 @@ def test_averaging_four_takes_about_100_percent_to_about_20() -> None:
     assert single > 4.0 * four
 
 
+@pytest.mark.slow
 def test_an_even_pad_scatters_only_by_where_the_stack_stands() -> None:
     bars = bars_of(PLAIN, 0)
     uneven = bars_of(THESIS, 0)

@@ -23,6 +23,7 @@ def found() -> ConverterErrors:
     return converter_errors(load_pad("thesis"), np.random.default_rng(0))
 
 
+@pytest.mark.slow
 def test_each_bit_halves_the_error_in_the_middle_of_the_range() -> None:
     middle = np.argmin(abs(LOAD_G - 60.0))
     error = found().of_bits_percent[:, middle]
@@ -30,6 +31,7 @@ def test_each_bit_halves_the_error_in_the_middle_of_the_range() -> None:
     assert 1.8 < per_bit < 2.2
 
 
+@pytest.mark.slow
 def test_the_range_within_5_percent_widens_with_bits() -> None:
     got = found()
     spans = [

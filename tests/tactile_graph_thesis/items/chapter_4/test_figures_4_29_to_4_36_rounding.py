@@ -43,6 +43,7 @@ def test_fine_cells_are_those_of_the_pipeline_and_whole_ones_the_footprint() -> 
     assert whole.rounded.pitch_cm == whole.original.pitch_cm
 
 
+@pytest.mark.slow
 def test_the_pre_filters_pair_is_as_many_passes_as_the_pipeline_makes() -> None:
     nodes, passes = stages("rectangle-2", frame()), setting("rectangle-2", "filled", "times")
     assert passes == 8
