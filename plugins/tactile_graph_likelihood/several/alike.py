@@ -9,9 +9,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outline_prior import LARGEST, SMALLEST
-from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.several.joint_posterior import MIDDLE, SPREAD
+from tactile_graph_likelihood.geometry.outlines import Values, unknowns
+from tactile_graph_likelihood.several.joint_posterior import MIDDLE, SPREAD, Outlines
+from tactile_graph_likelihood.several.kinds import area
 
 SPREADS = 0.2, 0.4, 0.8, 1.6
 """What the standard deviation of the logarithms may be, all alike likely."""
@@ -19,6 +23,7 @@ SPREADS = 0.2, 0.4, 0.8, 1.6
 HALF_LN_TWO_PI = 0.5 * math.log(2.0 * math.pi)
 
 
+@compiled_as_is
 def log_alike(values: Values) -> float:
     """Return the log density of values around their mean, which is unknown as is their spread.
 
@@ -31,18 +36,26 @@ def log_alike(values: Values) -> float:
     float
         Of N values over that of their mean; integrated over the mean, with a flat density of 1.
     """
-    some: list[float] = values.tolist()  # a few numbers: numpy takes ten times as long
-    n, mean = len(some), sum(some) / len(some)
-    squared = sum((value - mean) ** 2 for value in some)
-    logs = [
-        -(n - 1) * (math.log(spread) + HALF_LN_TWO_PI) - 0.5 * squared / spread**2
-        for spread in SPREADS
-    ]
-    top = max(logs)
-    each = sum(math.exp(log - top) for log in logs) / len(logs)
-    return top + math.log(each) - 0.5 * math.log(n)
+    n, total, squared = values.shape[0], 0.0, 0.0
+    for k in range(n):
+        total += values[k]
+    for k in range(n):
+        squared += (values[k] - total / n) ** 2
+    top = -math.inf
+    for s in range(len(SPREADS)):
+        top = max(top, _log_of_spread(n, squared, SPREADS[s]))
+    each = 0.0
+    for s in range(len(SPREADS)):
+        each += math.exp(_log_of_spread(n, squared, SPREADS[s]) - top)
+    return top + math.log(each / len(SPREADS)) - 0.5 * math.log(n)
 
 
+@compiled_as_is
+def _log_of_spread(n: int, squared: float, spread: float) -> float:
+    return -(n - 1) * (math.log(spread) + HALF_LN_TWO_PI) - 0.5 * squared / spread**2
+
+
+@compiled_as_is
 def alikeness(log_sizes: Values, log_loads: Values, prior: Values) -> float:
     """Return how much likelier outlines are as those of one pad than each by itself.
 
@@ -53,13 +66,29 @@ def alikeness(log_sizes: Values, log_loads: Values, prior: Values) -> float:
     prior : ndarray, shape (11,)
         As in `JointProblem`: what a single one may be.
     """
-    n = len(log_loads)
+    n = log_loads.shape[0]
     if n < 2:
         return 0.0
-    spread, middle = float(prior[SPREAD]), float(prior[MIDDLE])
-    alone: float = math.log(math.log(prior[LARGEST] / prior[SMALLEST]))
-    alone += math.log(spread) + HALF_LN_TWO_PI
-    off = [(load - middle) / spread for load in log_loads.tolist()]
+    spread, middle = prior[SPREAD], prior[MIDDLE]
+    alone = math.log(math.log(prior[LARGEST] / prior[SMALLEST])) + math.log(spread) + HALF_LN_TWO_PI
+    total, squared = 0.0, 0.0
+    for k in range(n):
+        off = (log_loads[k] - middle) / spread
+        total += off
+        squared += off * off
+    squared -= (total / n) ** 2
     together = log_alike(log_sizes) + log_alike(log_loads)
-    squared = sum(one * one for one in off) - (sum(off) / n) ** 2
-    return together + (n - 1) * alone + 0.5 * float(squared)
+    found: float = together + (n - 1) * alone + 0.5 * squared
+    return found
+
+
+@compiled_as_is
+def alikeness_of(outlines: Outlines, prior: Values) -> float:
+    """Return `alikeness` of outlines."""
+    n = outlines.kinds.shape[0]
+    log_sizes, log_loads = np.empty(n), np.empty(n)
+    for k in range(n):
+        kind, corners, p = outlines.kinds[k], outlines.corners[k], outlines.points[k]
+        log_sizes[k] = 0.5 * math.log(area(kind, corners, p))
+        log_loads[k] = p[unknowns(kind, corners)]
+    return alikeness(log_sizes, log_loads, prior)

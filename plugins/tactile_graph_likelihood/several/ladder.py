@@ -79,7 +79,7 @@ class Ladder(Scene):
 
     def __init__(self, *args: Any) -> None:
         super().__init__(*args)
-        self.each = self.more - math.log(len(self.kinds)) + DRAWN
+        self.each = self.before + DRAWN
         self.cut: set[bytes] = set()
         self.halves: dict[bytes, list[tuple[float, Values]]] = {}
 
@@ -106,7 +106,7 @@ class Ladder(Scene):
         points = points.copy()
         worth = self.sketched(points, self.problem, first) + math.lgamma(len(points) + 1.0)
         log_sizes = 0.5 * (points[:, 2] + points[:, 3])
-        return Sketches(points, worth + alikeness(log_sizes, points[:, 5], self.problem.prior))
+        return Sketches(points, worth + alikeness.call(log_sizes, points[:, 5], self.problem.prior))
 
     def sketched(self, points: Values, beside: JointProblem, first: int = 0) -> float:
         """Bring sketches, in place, to their joint mode beside others; return what they add."""

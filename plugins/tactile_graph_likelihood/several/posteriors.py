@@ -12,6 +12,7 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.geometry.outlines import Values, sizes
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
+from tactile_graph_likelihood.several.kinds import fits_of_kinds
 from tactile_graph_likelihood.several.pad import TEMPER, Found, OnPad
 from tactile_graph_likelihood.several.scene import Configuration, Sampled, area_of, laid
 from tactile_graph_likelihood.several.search import Search
@@ -151,12 +152,13 @@ class Kinds:
 
 def kinds_of(scene: Search, found: Configuration, k: int) -> Kinds:
     """Return one outline as each kind beside the others."""
-    beside, own, fits = scene.beside(found, k), found.only(k), []
-    for kind in scene.kinds:
-        if kind == (found.kinds[k], found.corners[k]):
-            fits.append(scene.settled(own, beside, 4)[0])
-        else:
-            fits.append(scene.as_kind(kind, own, beside))
+    may_be, n = scene.may_be, len(scene.kinds)
+    points, evidence = np.empty((n, WIDTH)), np.empty(n)
+    fits_of_kinds.call(scene.beside(found, k), may_be, found.only(k).outlines, points, evidence)
+    fits = [
+        Configuration(may_be.kinds[j : j + 1], may_be.corners[j : j + 1], points[j : j + 1], log)
+        for j, log in enumerate(evidence.tolist())
+    ]
     fits = [fit for fit in fits if fit.log_evidence > -math.inf]
     if not fits:
         raise Degenerate("an outline is possible as none of the kinds: none can be told")

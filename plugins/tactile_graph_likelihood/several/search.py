@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, Values
-from tactile_graph_likelihood.several.alike import alikeness
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.several.alike import alikeness_of
 from tactile_graph_likelihood.several.joint_posterior import JointProblem, add_outline
+from tactile_graph_likelihood.several.kinds import draw
 from tactile_graph_likelihood.several.ladder import (
     GAIN,
     SKETCHED,
@@ -22,23 +23,18 @@ from tactile_graph_likelihood.several.ladder import (
     laid_on,
     neighbours,
 )
-from tactile_graph_likelihood.several.scene import ROUNDS, Configuration, joined, like
-from tactile_graph_likelihood.several.sketch import LIGHTER, REST, STAGES, settle_sketches
+from tactile_graph_likelihood.several.scene import Configuration, joined
 from tactile_graph_likelihood.single.problem import Places
 
 Place = tuple[tuple[int, ...], Mask, float]
 """Numbers of outlines, which elements are theirs, and what is unexplained there, in nats."""
 
-PAIRS, SOFT = 3, 4
-"""Pairs of sketches of a piece that are looked at, and rounds of the soft search for the first kind
-that is drawn of each."""
+PAIRS = 3
+"""Pairs of sketches of a piece that are looked at."""
 
 PARTED, THREES, THREE = 2, 2, 15.0
 """Pairs of sketches of two outlines' elements of which either half is parted again, triples that
 are drawn at most, and how much less log probability these may have than what they replace."""
-
-TRIES = 24
-"""Other starts of an outline that is drawn by itself."""
 
 CHANGED, SAME_NUMBER, WORSE = 10.0, 20.0, 6.0
 """How much less log probability sketches may have to be drawn: than what they replace, where they
@@ -48,7 +44,7 @@ SURPLUS = 4.0
 """What may be left unexplained beyond what is usual, in nats, for outlines not to be looked for in
 any other way."""
 
-SPLIT, RECUT = 8.0, 6.0
+SPLIT, RECUT = 8.0, 9.0
 """What may be left unexplained, in nats, for an outline not to be parted, for two not to be parted
 anew."""
 
@@ -60,12 +56,6 @@ NEARLY = 4.0
 
 CLOSE = 15.0
 """How much less evidence outlines may have than what they replace, for other kinds to be tried."""
-
-ROUND_FROM = 0.75
-"""Ratio of a sketch's axes from which on it is taken to be a disc."""
-
-SKETCH_OVAL = 1.086
-"""Half axis of an ellipse over that of the sketch of the same area."""
 
 
 class Search(Ladder):
@@ -132,7 +122,7 @@ class Search(Ladder):
 
     def of_number(self, found: Configuration) -> float:
         """Return the log probability of outlines that are all of a part's, in one order."""
-        return self.worth(found) + alikeness(*found.log_sizes_and_loads, self.problem.prior)
+        return self.worth(found) + alikeness_of.call(found.outlines, self.problem.prior)
 
     def noted(self, found: Configuration) -> Configuration:
         """Return outlines brought to their joint mode; they are kept if their number's best."""
@@ -231,32 +221,10 @@ class Search(Ladder):
 
         Each is of the kind that explains most, where they come near a worth.
         """
-        points = points.copy()
-        settle_sketches.call(beside, points, SKETCHED, len(STAGES))
-        begun = made = joined([self.guessed(point) for point in points])
-        made = self.settled(made, beside, ROUNDS, SOFT)[0]
-        if self.worth(made) < worth - CLOSE:
-            return made
-        for k in range(made.count):
-            rest, first = self.beside(made, k, before=beside), (made.kinds[k], made.corners[k])
-            own = self.settled(made.only(k), rest, 0)[0]
-            others = [self.as_kind(kind, own, rest) for kind in self.kinds if kind != first]
-            if made.count == 1:
-                others += [self.as_kind(kind, begun, rest, 0, TRIES) for kind in self.kinds]
-            made = made.with_one(k, max([own, *others], key=lambda it: it.log_evidence))
-        return self.settled(made, beside, ROUNDS)[0]
-
-    def guessed(self, point: Values) -> Configuration:
-        """Return the outline of a likely kind that has a sketch's moments."""
-        x, y, a, b, angle, load = point
-        a, b = SKETCH_OVAL * math.exp(a + REST), SKETCH_OVAL * math.exp(b + REST)
-        oval = np.array([[x, y, a, b, angle, load - LIGHTER * REST]])
-        its = Configuration(np.array([ELLIPSE]), np.array([0]), oval, 0.0)
-        likely = (DISC, 0) if min(a, b) > ROUND_FROM * max(a, b) else (RECTANGLE, 0)
-        kind = likely if likely in self.kinds else self.kinds[0]
-        return Configuration(
-            np.array([kind[0]]), np.array([kind[1]]), like(kind, its)[0][None], 0.0
-        )
+        points, which = points.copy(), np.empty(len(points), np.int64)
+        least, may_be = self.shared * (worth - CLOSE - len(points) * self.before), self.may_be
+        log = draw.call(beside, may_be, points, which, least)
+        return Configuration(may_be.kinds[which], may_be.corners[which], points, log)
 
     def owners(self, found: Configuration) -> tuple[Places, Values]:
         """Return which outline, from 0, each touched element belongs to, and what is unexplained.

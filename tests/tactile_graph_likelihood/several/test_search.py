@@ -4,43 +4,16 @@ import numpy as np
 import pytest
 
 from helpers_joint import DISCS, problem_of_discs
-from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR, unpacked
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE
 from tactile_graph_likelihood.several.joint_posterior import Outlines, gain, log_rest_of
 from tactile_graph_likelihood.several.maximise_jointly import likeliest_of
-from tactile_graph_likelihood.several.scene import TURNS, Configuration, laid, like
+from tactile_graph_likelihood.several.scene import Configuration, laid
 from tactile_graph_likelihood.several.search import Search
 from tactile_graph_likelihood.single.element_terms import OFF, ON
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")
 
 KINDS = [(DISC, 0), (RECTANGLE, 0)]
-
-
-def only(kind, corners, *numbers):
-    point = np.zeros((1, 6))
-    point[0, : len(numbers)] = numbers
-    return Configuration(np.array([kind]), np.array([corners]), point, 0.0)
-
-
-@pytest.mark.parametrize(
-    "own",
-    [
-        only(DISC, 0, 8.0, 7.0, 2.5, 4.2),
-        only(ELLIPSE, 0, 8.0, 7.0, 2.6, 2.4, 0.3, 4.2),
-        only(RECTANGLE, 0, 8.0, 7.0, 2.6, 2.4, 0.3, 4.2),
-        only(REGULAR, 3, 8.0, 7.0, 3.2, 0.3, 4.2),
-    ],
-)
-@pytest.mark.parametrize("kind", [(DISC, 0), (ELLIPSE, 0), (RECTANGLE, 0), (REGULAR, 3)])
-def test_an_outline_of_another_kind_has_about_the_same_area_place_and_load(own, kind):
-    was = unpacked(int(own.kinds[0]), int(own.corners[0]), own.points[0])
-    rows = like(kind, own)
-    assert len(rows) == (TURNS if kind[0] == REGULAR else 1)
-    for row in rows:
-        found = unpacked(*kind, row)
-        assert found.area_cm2 == pytest.approx(was.area_cm2, rel=0.06)
-        assert (row[:2] == [8.0, 7.0]).all()
-        assert 4.2 in row
 
 
 def test_elements_belong_to_the_outline_that_brings_most_or_the_nearest():
