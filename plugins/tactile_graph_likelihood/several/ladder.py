@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.alike import alikeness
@@ -23,15 +22,7 @@ from tactile_graph_likelihood.several.partings import across, partings, sketch_o
 from tactile_graph_likelihood.several.scene import Scene
 from tactile_graph_likelihood.several.seeds import seeds
 from tactile_graph_likelihood.several.sketch import STAGES, lay_sketches, settle_sketches
-from tactile_graph_likelihood.single.element_terms import (
-    LEAST,
-    ON,
-    SIGMA,
-    SQRT_HALF,
-    UNKNOWN,
-    VOIDS,
-    on_level,
-)
+from tactile_graph_likelihood.several.whose import unexplained_by, whose_by_sketches
 from tactile_graph_likelihood.single.problem import Places
 
 Mask = NDArray[np.bool_]
@@ -44,12 +35,6 @@ SKETCHED = len(STAGES) - 1
 
 DRAWN = 2.0
 """How much more evidence an outline has than its sketch, about."""
-
-ODD = 2.0
-"""Half the squared residual, in sigmas, from which on a reading counts as not explained."""
-
-USUAL = 0.1307
-"""Mean of what a reading leaves unexplained, were the model true."""
 
 UNEXPLAINED = 4.0
 """What may be left unexplained, in nats, for a sketch not to be parted, nor two cut anew."""
@@ -188,14 +173,7 @@ class Ladder(Scene):
 
         -1 where untouched; what sketches that explain an element wholly would add, in nats.
         """
-        rows, columns = np.nonzero(self.on)
-        x0, y0, pitch, side = self.problem.grid[:4]
-        dx = x0 + 0.5 * side + pitch * columns - points[:, :1]
-        dy = y0 + 0.5 * side + pitch * rows - points[:, 1:2]
-        cos, sin = np.cos(points[:, 4:5]), np.sin(points[:, 4:5])
-        u, v = (cos * dx - sin * dy) / np.exp(points[:, 2:3]), sin * dx + cos * dy
-        own = np.full(self.on.shape, -1)
-        own[rows, columns] = (u**4 + (v / np.exp(points[:, 3:4])) ** 4).argmin(axis=0)
+        own = whose_by_sketches.call(self.problem, points)
         beside, _ = self.beside_sketches(points)
         return own, self.unexplained(beside.load)
 
@@ -228,31 +206,6 @@ class Ladder(Scene):
     def unexplained(self, load: Values) -> Values:
         """Return how much likelier each element's reading would be, were it explained wholly."""
         return unexplained_by.call(self.problem, load, False)
-
-
-@compiled_as_is
-def unexplained_by(problem: JointProblem, load: Values, less_usual: bool) -> Values:
-    """Return what a load leaves unexplained of each reading, in nats, shape (rows, columns).
-
-    Less what a load that is true would leave in the mean, where that is asked for.
-    """
-    states, noise = problem.states, problem.noise
-    most, found = on_level(noise), np.zeros(load.shape)
-    for i in range(load.shape[0]):
-        for j in range(load.shape[1]):
-            if states[i, j] == UNKNOWN:
-                continue
-            mu = math.log(max(load[i, j], 1e-9))
-            z = (mu - noise[LEAST]) / noise[SIGMA]
-            shows = (1.0 - noise[VOIDS]) * 0.5 * math.erfc(-SQRT_HALF * z)
-            if states[i, j] == ON:
-                half = 0.5 * ((problem.logs[i, j] - mu) / noise[SIGMA]) ** 2
-                found[i, j] = min(half, most) if half > ODD else 0.0
-            else:
-                found[i, j] = -math.log1p(-shows)
-            if less_usual:
-                found[i, j] -= shows * USUAL - (1.0 - shows) * math.log1p(-shows)
-    return found
 
 
 def laid_on(problem: JointProblem, points: Values) -> JointProblem:

@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.several.alike import alikeness_of
-from tactile_graph_likelihood.several.joint_posterior import JointProblem, add_outline
+from tactile_graph_likelihood.several.joint_posterior import JointProblem
 from tactile_graph_likelihood.several.kinds import draw
 from tactile_graph_likelihood.several.ladder import (
     GAIN,
@@ -24,6 +24,7 @@ from tactile_graph_likelihood.several.ladder import (
     neighbours,
 )
 from tactile_graph_likelihood.several.scene import Configuration, joined
+from tactile_graph_likelihood.several.whose import whose_by_outlines
 from tactile_graph_likelihood.single.problem import Places
 
 Place = tuple[tuple[int, ...], Mask, float]
@@ -231,14 +232,4 @@ class Search(Ladder):
 
         -1 where untouched; what outlines that explain an element wholly would add, in nats.
         """
-        loads = np.zeros((found.count, *self.on.shape))
-        spare = np.zeros(self.on.shape)
-        for k in range(found.count):
-            add_outline.call(self.problem._replace(load=loads[k], share=spare), found.outlines, k)
-        own = np.where(self.on & (loads.max(axis=0) > 0.0), loads.argmax(axis=0), -1)
-        for i, j in zip(*np.nonzero(self.on & (own < 0)), strict=True):
-            y, x = np.nonzero(own >= 0)
-            off = np.maximum(abs(y - i), abs(x - j))
-            if len(off) and off.min() <= 2:
-                own[i, j] = own[y[off.argmin()], x[off.argmin()]]
-        return own, self.unexplained(loads.sum(axis=0))
+        return whose_by_outlines.call(self.problem, found.outlines)

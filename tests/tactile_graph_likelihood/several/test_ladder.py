@@ -7,7 +7,8 @@ from scipy.special import ndtr
 from helpers_joint import DISCS, problem_of_discs
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE
 from tactile_graph_likelihood.several.joint_posterior import Outlines, add_outline
-from tactile_graph_likelihood.several.ladder import ODD, Ladder, dilated, neighbours
+from tactile_graph_likelihood.several.ladder import Ladder, dilated, neighbours
+from tactile_graph_likelihood.several.whose import ODD
 from tactile_graph_likelihood.single.element_terms import LEAST, SIGMA, UNKNOWN, VOIDS, on_level
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")
