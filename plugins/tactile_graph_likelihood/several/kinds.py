@@ -209,10 +209,8 @@ def fits_of_kinds(
 def guess(may_be: Allowed, sketch: Values, found: Values) -> int:
     """Write the outline of a likely kind that has a sketch's moments; return which kind."""
     oval, starts = sketch.copy(), np.empty((TURNS, WIDTH))
-    oval[2], oval[3] = (
-        SKETCH_OVAL * math.exp(sketch[2] + REST),
-        SKETCH_OVAL * math.exp(sketch[3] + REST),
-    )
+    oval[2] = SKETCH_OVAL * math.exp(sketch[2] + REST)
+    oval[3] = SKETCH_OVAL * math.exp(sketch[3] + REST)
     oval[5] = sketch[5] - LIGHTER * REST
     is_round = min(oval[2], oval[3]) > ROUND_FROM * max(oval[2], oval[3])
     which = 0

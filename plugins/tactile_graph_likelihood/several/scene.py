@@ -97,6 +97,7 @@ class Scene:
         self.problem, self.kinds, self.more, self.shared = problem, kinds, more, shared
         self.on, self.may_be = problem.states == ON, allowed(kinds)
         self.before = more - math.log(len(kinds))
+        """What an outline adds to the log probability before anything is read."""
 
     def beside(
         self, found: Configuration, *left_out: int, before: JointProblem | None = None
@@ -105,17 +106,13 @@ class Scene:
         return laid(before or self.problem, found.without(*left_out))
 
     def settled(
-        self,
-        found: Configuration,
-        beside: JointProblem | None = None,
-        most: int = 15,
-        soft: int = 0,
+        self, found: Configuration, beside: JointProblem | None = None, most: int = 15
     ) -> tuple[Configuration, Values]:
         """Return outlines brought to their joint mode beside others, and the information there."""
         points = found.points.copy()
         matrix = np.empty((found.count * WIDTH, found.count * WIDTH))
         outlines = Outlines(found.kinds, found.corners, points)
-        log = settle.call(beside or self.problem, outlines, soft, most, 0.1, matrix)
+        log = settle.call(beside or self.problem, outlines, 0, most, 0.1, matrix)
         return Configuration(found.kinds, found.corners, points, log), matrix
 
     def worth(self, found: Configuration) -> float:
