@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+import sys
 from collections.abc import Iterable
 from typing import Any
 
@@ -28,6 +29,12 @@ def visible(text: str) -> str:
         if len(raw.translate(None, _ASCII_HIDDEN)) == len(raw):
             return text
     return _HIDDEN.sub(_spelled, text)
+
+
+def tell(text: str) -> None:
+    """Say a line on stderr at once, whatever command waits."""
+    sys.stderr.write(visible(text) + "\n")
+    sys.stderr.flush()
 
 
 def _spelled(found: re.Match[str]) -> str:

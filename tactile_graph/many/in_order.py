@@ -7,7 +7,6 @@ workers die each time is found by halving, told, and left out.
 
 from __future__ import annotations
 
-import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Future
@@ -15,7 +14,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from tactile_graph.errors import DataError
-from tactile_graph.foreign_text import visible
+from tactile_graph.foreign_text import tell
 from tactile_graph.many.executor_kind import Opened, Place
 from tactile_graph.many.portion import Portion
 
@@ -263,12 +262,6 @@ class InOrder(Generic[Done]):
                 if isinstance(death, BrokenExecutor):
                     self._end()
                 return False, None
-
-
-def tell(text: str) -> None:
-    """Say a line on stderr, whatever command waits."""
-    sys.stderr.write(visible(text) + "\n")
-    sys.stderr.flush()
 
 
 def _has_result(future: Future[Any]) -> bool:

@@ -54,11 +54,9 @@ def foreign_code(name: str, label: str) -> Iterator[None]:
 
 
 def _tell(name: str, label: str) -> None:
-    from tactile_graph.foreign_text import visible
+    from tactile_graph.foreign_text import tell
 
-    text = f"{label} is still being imported after {SLOW_S:g} s; --plugins=-{name} does without it"
-    sys.stderr.write(visible(text) + "\n")
-    sys.stderr.flush()
+    tell(f"{label} is still being imported after {SLOW_S:g} s; --plugins=-{name} does without it")
 
 
 class _Signals:

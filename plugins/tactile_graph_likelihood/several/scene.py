@@ -15,7 +15,7 @@ from tactile_graph_likelihood.several.joint_posterior import (
     Outlines,
     add_outlines,
 )
-from tactile_graph_likelihood.several.kinds import allowed, area
+from tactile_graph_likelihood.several.kinds import ENOUGH, allowed, area
 from tactile_graph_likelihood.several.maximise_jointly import settle
 from tactile_graph_likelihood.several.sample_beside import sample_beside
 from tactile_graph_likelihood.single.element_terms import ON
@@ -112,7 +112,7 @@ class Scene:
         points = found.points.copy()
         matrix = np.empty((found.count * WIDTH, found.count * WIDTH))
         outlines = Outlines(found.kinds, found.corners, points)
-        log = settle.call(beside or self.problem, outlines, 0, most, 0.1, matrix)
+        log = settle.call(beside or self.problem, outlines, 0, most, ENOUGH, matrix)
         return Configuration(found.kinds, found.corners, points, log), matrix
 
     def worth(self, found: Configuration) -> float:

@@ -71,7 +71,7 @@ def whose_by_outlines(problem: JointProblem, outlines: Outlines) -> tuple[Places
     rows, cols = states.shape
     own = np.full((rows, cols), -1, np.int64)
     most, total = np.zeros((rows, cols)), np.zeros((rows, cols))
-    here, share = np.empty((rows, cols)), np.empty((rows, cols))
+    here, share = np.empty((rows, cols)), np.zeros((rows, cols))
     for k in range(outlines.kinds.shape[0]):
         here[:, :] = 0.0
         lay(problem, outlines, k, 0, 0, here, share)
