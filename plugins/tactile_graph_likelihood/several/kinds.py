@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -64,13 +63,9 @@ class Allowed(NamedTuple):
     around: Values
 
 
-def allowed(kinds: Sequence[tuple[int, int]]) -> Allowed:
-    """Return what outlines may be, given kinds and their corners."""
-    return _allowed(tuple(kinds))
-
-
 @cache
-def _allowed(kinds: tuple[tuple[int, int], ...]) -> Allowed:
+def allowed(kinds: tuple[tuple[int, int], ...]) -> Allowed:
+    """Return what outlines may be, given kinds and their corners."""
     around = np.zeros((len(kinds), TRIES, WIDTH))
     for k, kind in enumerate(kinds):
         n = unknowns.call(*kind) + 1

@@ -95,7 +95,7 @@ class Scene:
         self, problem: JointProblem, kinds: list[tuple[int, int]], more: float, shared: float
     ) -> None:
         self.problem, self.kinds, self.more, self.shared = problem, kinds, more, shared
-        self.on, self.may_be = problem.states == ON, allowed(kinds)
+        self.on, self.may_be = problem.states == ON, allowed(tuple(kinds))
         self.before = more - math.log(len(kinds))
         """What an outline adds to the log probability before anything is read."""
 

@@ -30,8 +30,8 @@ from tactile_graph_likelihood.single.element_terms import OFF, ON
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")
 
-KINDS = [(DISC, 0), (ELLIPSE, 0), (RECTANGLE, 0)]
-FOUR = [*KINDS, (REGULAR, 3)]
+KINDS = (DISC, 0), (ELLIPSE, 0), (RECTANGLE, 0)
+FOUR = (*KINDS, (REGULAR, 3))
 DISC_THERE = (DISC, 0, [9.1, 8.3, 2.9, 4.5])
 BOX_THERE = (RECTANGLE, 0, [9.1, 8.3, 4.1, 1.7, 0.4, 4.5])
 
