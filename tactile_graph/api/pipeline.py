@@ -137,7 +137,7 @@ class Pipeline(Graph):
         Parameters
         ----------
         frames : iterable of Frame or ndarray, optional
-            The pipeline's own source if not given.
+            The pipeline's own source if not given. Bare arrays are numbered as they come.
         only, seed
             As in `run`.
         """
@@ -189,8 +189,8 @@ class Pipeline(Graph):
         self, frames: Iterable[Frame | NDArray[np.generic]], runner: Runner[Result]
     ) -> Iterator[Result]:
         """Yield the results of the frames, each as it comes, by a runner of this pipeline."""
-        for frame in frames:
-            result = runner(_as_frame(frame))
+        for index, frame in enumerate(frames):
+            result = runner(_as_frame(frame, index))
             if self.promises.waiting:
                 self.promises.check(result)
             yield result
@@ -367,5 +367,5 @@ def _unpickled(text: str, file: str, overrides: Overrides, source: SourceOverrid
     return Pipeline.of(resolve_again(parse_graph(text, file), overrides, source))
 
 
-def _as_frame(frame: Any) -> Frame:
-    return frame if frame.__class__ is Frame else Frame.of(frame)
+def _as_frame(frame: Any, index: int = 0) -> Frame:
+    return frame if frame.__class__ is Frame else Frame.of(frame, index=index)

@@ -23,7 +23,7 @@ from tactile_graph.engine.operations.step_operation import Operation, step_label
 from tactile_graph.engine.outcomes.outcomes import INNER, ITEM_FAILURES, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.program import make_program
-from tactile_graph.errors import RuleError
+from tactile_graph.errors import RuleError, UsageError
 from tactile_graph.pipeline.facts import quantity_trouble
 from tactile_graph.pipeline.graph import FrameRule, Graph, Node
 from tactile_graph.wires.frame import Frame
@@ -50,12 +50,21 @@ class RunSettings:
     after : Runner, optional
         Of the same seed, and verified likewise; not called any more once this one is. Nodes of
         equal key go on with the state they have there.
+
+    Raises
+    ------
+    UsageError
+        If the seed is below 0.
     """
 
     seed: int = 0
     verify: bool = False
     decider: Decider | None = None
     after: Runner[Any] | None = None
+
+    def __post_init__(self) -> None:
+        if self.seed < 0:
+            raise UsageError(f"seed: must be a whole number >= 0, got {self.seed}")
 
 
 class Runner(Generic[ResultT]):

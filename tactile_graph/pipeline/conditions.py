@@ -70,11 +70,22 @@ class Guard:
         read = ", ".join(dict.fromkeys(told))
         return f"when {self.text} is false" + (f" ({read})" if read else "")
 
+    def __reduce__(self) -> tuple[Callable[..., Guard], tuple[Any, ...]]:
+        """Pickle without the function, which is made again of the meaning."""
+        return _made_again, (self.text, self.refs, self.meaning, self.groups)
+
     def settled(self, known: Mapping[Ref, str]) -> bool | None:
         """Return what comes out where all that is known are these values; None if that is open."""
         values = {f"v{i}": known[ref] for i, ref in enumerate(self.refs) if ref in known}
         tree = ast.parse(self.meaning, mode="eval").body
         return _settled(tree, values) if values else None
+
+
+def _made_again(
+    text: str, refs: tuple[Ref, ...], meaning: str, groups: tuple[tuple[int, ...], ...]
+) -> Guard:
+    tree = ast.parse(meaning, mode="eval").body
+    return Guard(text, refs, _function(tree, len(refs), groups), meaning, groups)
 
 
 def _settled(node: ast.expr, values: Mapping[str, str]) -> bool | None:
@@ -158,8 +169,8 @@ def compile_condition(
             raise ConditionError(compiler.not_truth(tree))
         _check_depth(tree)
         meaning = ast.unparse(tree)
-        function = _function(compiler, tree)
         refs, groups = tuple(compiler.refs), tuple(compiler.groups)
+        function = _function(tree, len(refs), groups)
         return Guard(" ".join(text.split()), refs, function, meaning, groups)
     except (RecursionError, MemoryError):
         raise ConditionError(f"nested deeper than {DEEPEST} levels") from None
@@ -173,12 +184,9 @@ def _check_depth(tree: ast.AST) -> None:
         raise ConditionError(f"nested deeper than {DEEPEST} levels")
 
 
-def _function(
-    compiler: _Compiler, tree: ast.expr, refs: Sequence[Ref] | None = None
-) -> Callable[..., Any]:
-    refs = compiler.refs if refs is None else refs
-    arguments = [ast.arg(f"v{i}") for i in range(len(refs))]
-    rows = spelled_out(tree, compiler.groups)
+def _function(tree: ast.expr, n_refs: int, groups: Sequence[tuple[int, ...]]) -> Callable[..., Any]:
+    arguments = [ast.arg(f"v{i}") for i in range(n_refs)]
+    rows = spelled_out(tree, groups)
     body = ast.Lambda(ast.arguments([], arguments, None, [], [], None, []), rows)
     code = compile(ast.fix_missing_locations(ast.Expression(body)), "<condition>", "eval")
     function: Callable[..., Any] = eval(code, {"__builtins__": {}, "zip": zip, **FUNCTIONS})

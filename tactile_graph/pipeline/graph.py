@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 from tactile_graph.errors import Mark, UsageError
@@ -15,6 +15,7 @@ from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.plugins.registry import Registry
+from tactile_graph.steps.own import bound
 from tactile_graph.steps.rules import GridFact, Quantity
 from tactile_graph.steps.signature import Kind, Port, Signature
 from tactile_graph.vocabulary import QUANTITIES
@@ -145,8 +146,7 @@ class Node:
         signature = self.signature
         assert signature is not None, f"{self.name} is no step"
         if signature.kind is not Kind.CLASS:
-            settings = signature.arguments(self.settings)
-            return partial(signature.target, **settings) if settings else signature.target
+            return bound(signature.target, signature.arguments(self.settings))
         if self.callable is not None and not signature.stateful:
             return self.callable
         settings = signature.arguments(self.settings)

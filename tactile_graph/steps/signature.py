@@ -8,13 +8,14 @@ import typing
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
 from tactile_graph.errors import PluginError, shown
 from tactile_graph.steps.injected import Report, is_time_gap
+from tactile_graph.steps.own import bound, own
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.steps.spread import Record, Spread, spread
 
@@ -111,10 +112,14 @@ class Signature:
         return next((p for p in self.ports if p.name == name), None)
 
     def arguments(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Return settings as the target takes them: those that are spread in their dataclass."""
+        """Return settings as the target takes them: those that are spread in their dataclass.
+
+        They are the caller's own: whoever changes a list among them changes nobody else's.
+        """
+        values = {name: own(value) for name, value in values.items()}
         records = {s.name: s.record for s in self.settings if s.record is not None}
         if not records:
-            return dict(values)
+            return values
         out = {n: v for n, v in values.items() if n not in records}
         for record in {r.parameter: r for r in records.values()}.values():
             its = {n: v for n, v in values.items() if n in records and records[n] is record}
@@ -137,7 +142,7 @@ class Signature:
         """
         if self.kind is Kind.CLASS:
             return getattr(made(), name)  # type: ignore[no-any-return]
-        return partial(getattr(self.target, name), **self.arguments(settings))
+        return bound(getattr(self.target, name), self.arguments(settings))
 
     @property
     def fields(self) -> tuple[str, ...]:

@@ -98,8 +98,8 @@ def run_pipeline(
         made = made.with_settings(settings)
     runner = made.runner(seed=seed, verify=True)
     results = []
-    for frame in frames or made.frames(seed):
-        result = runner(frame if isinstance(frame, Frame) else Frame.of(frame))
+    for index, frame in enumerate(frames or made.frames(seed)):
+        result = runner(frame if isinstance(frame, Frame) else Frame.of(frame, index=index))
         made.promises.check(result)
         for failed in result.failures:
             raise failed.error

@@ -90,8 +90,8 @@ class Frame:
         ------
         ValueError
             If values are no real numbers or have no rows and columns, the pitch is not within
-            1e-6 to 1e6 cm, the origin not within 1e9 cm, a time not finite, or nobody knows the
-            quantity.
+            1e-6 to 1e6 cm, the origin not within 1e9 cm, a time not finite, the index below 0, or
+            nobody knows the quantity.
         """
         copy = _real(values)
         if copy.ndim != 2 or 0 in copy.shape:
@@ -115,6 +115,8 @@ class Frame:
             time_s = rest.get(name)
             if time_s is not None and not isfinite(time_s):
                 raise ValueError(f"{name} must be finite, got {time_s}")
+        if rest.get("index", 0) < 0:
+            raise ValueError(f"an index counts from 0, got {rest['index']}")
         named = checked_quantity(quantity)
         return cls(Image(copy, (x, y), origin_cm, named, valid), **rest)
 

@@ -169,7 +169,8 @@ class Summary:
         for row in rows:
             for output, value in row["outputs"].items():
                 words.setdefault(output, Counter())[_ended(value)] += 1
-                _gather(output, value, numbers, texts)
+                for item in value if isinstance(value, list) else [value]:
+                    _gather(output, item, numbers, texts)
             for output, errors in row.get("errors", {}).items():
                 for error, value in errors.items():
                     head, _, unit = error.rpartition("_")
@@ -262,6 +263,7 @@ def _gather(
         for name, inner in value.items():
             if name != "shape" or not isinstance(inner, list):
                 _gather(f"{key}.{name}", inner, numbers, texts)
-    elif isinstance(value, list) and any(isinstance(item, dict) for item in value):
-        for item in value:
+    elif isinstance(value, list):
+        named = any(isinstance(item, dict) and _ended(item) == "ok" for item in value)
+        for item in value if named else ():
             _gather(key, item, numbers, texts)

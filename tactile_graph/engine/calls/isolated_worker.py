@@ -11,7 +11,6 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import ExitStack
-from functools import partial
 from typing import IO, Any
 
 MADE, VALUE, ERROR, ENDED = "made", "value", "error", "ended"
@@ -94,8 +93,10 @@ def serve(orders: IO[bytes], answers: IO[bytes], made: Callable[[], None]) -> No
 
 
 def _made(order: bytes) -> Callable[..., Any]:
+    from tactile_graph.steps.own import bound  # a step needs numpy; this process can do without
+
     target, settings, is_class = pickle.loads(order)
-    made: Callable[..., Any] = target(**settings) if is_class else partial(target, **settings)
+    made: Callable[..., Any] = target(**settings) if is_class else bound(target, settings)
     return made
 
 

@@ -58,6 +58,7 @@ def _frames(source: Source, seed: int, report: Report, in_stacks: bool) -> Itera
     if signature.report:
         injected[signature.report] = report
     frames = target(**signature.arguments(source.settings), **injected)
+    number = Numbering()
     try:
         for frame in frames:
             if form is not None and isinstance(frame, FrameStack):
@@ -70,6 +71,25 @@ def _frames(source: Source, seed: int, report: Report, in_stacks: bool) -> Itera
                     f"it must yield frames, got {type(frame).__name__}",
                 )
             report.counts["frames"] += 1
-            yield frame
+            yield number(frame)
     finally:
         frames.close()
+
+
+class Numbering:
+    """Number the frames of a source that leaves all of them 0, by sensor; others stay as they are.
+
+    Steps draw their random numbers by the frame's.
+    """
+
+    def __init__(self) -> None:
+        self._given: tuple[int, str] | None = None
+        self._last = 0
+
+    def __call__(self, frame: Frame) -> Frame:
+        """Return the next frame."""
+        given = frame.index, frame.label
+        if frame.index == 0 and given == self._given:
+            frame = frame.with_index(self._last + 1)
+        self._given, self._last = given, frame.index
+        return frame

@@ -1,4 +1,7 @@
-"""Freeze what steps return: arrays become read-only, lists become tuples; nothing is copied."""
+"""Freeze what steps return: arrays become read-only, lists tuples, mappings the result's own.
+
+No array is copied.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,7 @@ FROZEN: set[type] = {*IMMUTABLE, Image}
 
 
 def freeze(value: Any) -> Any:
-    """Return the value with every array in it read-only and every list a tuple."""
+    """Return the value with every array in it read-only, every list a tuple, every dict a copy."""
     kind = value.__class__
     if kind in FROZEN or value is None:
         return value
@@ -69,6 +72,8 @@ def _freeze_container(value: Any) -> Any:
             return type(value)(*items) if hasattr(value, "_fields") else tuple(items)
     elif isinstance(value, list):
         return tuple(freeze(v) for v in value)
+    elif value.__class__ is dict:  # a step may give the one it keeps, and go on filling it
+        return {key: freeze(item) for key, item in value.items()}
     elif isinstance(value, dict):
         for item in value.values():
             freeze(item)

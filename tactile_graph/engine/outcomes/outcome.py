@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -121,8 +122,29 @@ class Failed:
         item = (i, *self.item)
         return Failed(self.origin, self.error, self.where, self.inputs, self.step, item)
 
+    def __reduce__(self) -> tuple[Callable[..., Failed], tuple[Any, ...]]:
+        """Pickle with an error of the same words, where the error itself is not to be pickled."""
+        rest = (self.where, self.inputs, self.step, self.item)
+        if _travels(self.error):
+            return Failed, (self.origin, self.error, *rest)
+        return _told_of, (self.origin, type(self.error).__name__, text_of(self.error), *rest)
+
     def __repr__(self) -> str:
         return f"<failed at {self.origin!r}: {self.reason}>"
+
+
+def _travels(error: Exception) -> bool:
+    """Return whether an error is the same after pickling; a plugin's own may not even come back."""
+    try:
+        again = pickle.loads(pickle.dumps(error))
+    except Exception:
+        return False
+    return type(again) is type(error) and text_of(again) == text_of(error)
+
+
+def _told_of(origin: str, kind: str, text: str, *rest: Any) -> Failed:
+    """Return a failure whose error is known by its words alone."""
+    return Failed(origin, type(kind, (Exception,), {})(text), *rest)
 
 
 Outcome = Any

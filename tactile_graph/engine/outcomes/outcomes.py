@@ -65,6 +65,10 @@ class Outcomes(Mapping[str, Any]):
         self.plan = plan
         self._state = state
 
+    def __reduce__(self) -> tuple[type[Self], tuple[Plan, list[Any]]]:
+        """Pickle with everything made that was left for later."""
+        return type(self), (self.plan, self.whole_state)
+
     @property
     def whole_state(self) -> list[Any]:
         """The state with everything made that was left for later."""

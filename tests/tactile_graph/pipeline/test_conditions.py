@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
@@ -310,3 +311,17 @@ nodes:
 outputs: [a]
 """
     assert loads(text).run(Frame.of([[1.0]], quantity="volt")).ok is ran
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["any(items.size > 2.5 and items.kind == 'disc') or a > 5", "count(flags) == 1", "b < 1"],
+)
+def test_a_guard_is_pickled_and_holds_as_before(text: str) -> None:
+    guard = compile_condition(text, TYPES)
+    again = pickle.loads(pickle.dumps(guard))
+    assert (again.text, again.refs, again.groups) == (guard.text, guard.refs, guard.groups)
+    for size, flag, a, b in ((3.0, True, 1, 0.5), (1.0, False, 1, 2.0), (1.0, True, 6, 0.5)):
+        values = {"items.size": (size,), "items.kind": ("disc",), "flags": (flag,), "a": a, "b": b}
+        given = [values[ref.spelled] for ref in guard.refs]
+        assert again.function(*given) == guard.function(*given)

@@ -13,7 +13,9 @@ import pytest
 
 from helpers_graphs import registry
 from tactile_graph import Circle, Frame, Image, Mask, Points, load, loads
-from tactile_graph.errors import UsageError
+from tactile_graph.engine.blocks.block import Block
+from tactile_graph.engine.outcomes.outcome import Failed
+from tactile_graph.errors import Degenerate, UsageError
 from tactile_graph.wires.frame import TrueObject
 
 WAYS: list[Callable[[Any], Any]] = [
@@ -83,3 +85,38 @@ def test_a_pipeline_with_a_registry_of_its_own_says_why_not() -> None:
     with pytest.raises(UsageError, match="registry of its own"):
         pickle.dumps(own)
     assert copy.copy(own) is own
+
+
+class TwoWordsError(Exception):
+    """Does not come back from a pickle: its one argument is not what it takes."""
+
+    def __init__(self, one: str, two: str) -> None:
+        super().__init__(f"{one} {two}")
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_results_are_as_before_whatever_was_skipped_or_failed(way: Callable[[Any], Any]) -> None:
+    pipeline = load("circle-1").with_source("simulate", scene="discs", frames=4)
+    frames = [*pipeline.frames(), Frame.of(np.zeros((16, 16)), 1.3, quantity="volt")]
+    whole = [r for b in pipeline.blocks(frames) for r in (b if isinstance(b, Block) else [b])]
+    for result in [*pipeline.stream(frames), *whole]:
+        again = way(result)
+        assert again.row() == result.row()
+        assert [(e.state, e.reason) for e in again.explain()] == [
+            (e.state, e.reason) for e in result.explain()
+        ]
+    assert "skipped" in {e.state for e in whole[-1].explain()}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_failure_keeps_its_words_though_its_error_is_not_to_be_pickled(
+    way: Callable[[Any], Any],
+) -> None:
+    for error in (TwoWordsError("too", "dark"), Degenerate("no points")):
+        failed = Failed("a", error, "a.py:3", "an image", "step 'a'", (2,))
+        again = way(failed)
+        assert (again.reason, again.kind, repr(again)) == (
+            failed.reason, failed.kind, repr(failed),
+        )  # fmt: skip
+        assert (again.where, again.inputs, again.item) == ("a.py:3", "an image", (2,))
+        assert way(again).reason == failed.reason

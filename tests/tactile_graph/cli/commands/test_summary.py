@@ -110,6 +110,25 @@ def test_what_was_skipped_and_items_of_lists_are_told_of_json_lines() -> None:
     assert told["quantities"]["n"]["mean"] == 3.5
 
 
+def test_numbers_of_lists_count_whether_or_not_an_item_failed() -> None:
+    failed = {"failed": "too dark", "origin": "b", "kind": "degenerate", "item": "2"}
+    lists: list[list[Any]] = [[10.0, 20.0], [30.0], [1.0, failed], [failed], []]
+    lines = [
+        {
+            "frame": i,
+            "outputs": {"b": b, "held": {"corners": [[1, 2], [3, 4]], "each": [failed, 5]}},
+        }
+        for i, b in enumerate(lists)
+    ]
+    Path("lists.jsonl").write_text("\n".join(map(json.dumps, lines)) + "\n")
+    told = of("lists.jsonl")
+    b = told["quantities"]["b"]
+    assert (b["n"], b["mean"], b["least"], b["most"]) == (4, 15.25, 1.0, 30.0)
+    assert told["outcomes"]["b"] == {"ok": 3, "failed: too dark": 2}
+    assert "held.corners" not in told["quantities"]
+    assert "held.each" not in told["quantities"]
+
+
 def test_people_get_what_fits_and_are_told_the_rest() -> None:
     done = call("summary", "out.csv")
     assert "out.csv: 5 frames of 2 recordings, 3 s by their times" in done.stdout

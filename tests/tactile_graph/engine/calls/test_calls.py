@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+import pytest
+
 from helpers_graphs import frame, registry
-from tactile_graph import Image, loads
+from tactile_graph import Frame, Image, loads
+from tactile_graph.engine.calls.sources import Numbering
 from tactile_graph.engine.outcomes.outcome import Failed
+from tactile_graph.errors import UsageError
 
 
 def scaled(image: Image, *, factor: int = 2, offset: int = 0) -> int:
@@ -84,3 +90,112 @@ def test_a_failure_of_a_step_with_settings_names_its_own_file_and_function() -> 
     assert isinstance(failed, Failed)
     assert "test_calls.py" in failed.where
     assert failed.where.endswith("in scaled")
+
+
+@dataclass
+class Open:
+    items: list[float] = field(default_factory=list)
+
+
+def grown(image: Image, *, c: list[float] = [1.0]) -> float:  # noqa: B006 - that is the point
+    c.append(1.0)
+    return float(sum(c))
+
+
+def emptied(image: Image, *, by: dict[str, list[float]]) -> float:
+    by["a"].append(float(len(by)))
+    return float(sum(by.popitem()[1]))
+
+
+def opened(image: Image, *, c: Open = Open([2.0])) -> float:  # noqa: B008
+    c.items.append(1.0)
+    return sum(c.items)
+
+
+class Growing:
+    """Keeps the list that it was set to, and adds to it."""
+
+    def __init__(self, *, c: list[float] = [1.0]) -> None:  # noqa: B006
+        self.c = c
+
+    def __call__(self, image: Image) -> float:
+        self.c.append(1.0)
+        return sum(self.c)
+
+
+CHANGING = {"grown": grown, "emptied": emptied, "opened": opened, "growing": Growing}
+
+
+def test_what_a_step_does_to_a_list_it_was_set_to_reaches_no_other_frame_run_or_load() -> None:
+    text = """pipeline: p
+nodes:
+  a: {step: grown, in: frame}
+  b: {step: grown, in: frame, with: {c: [5.0]}}
+  c: {step: emptied, in: frame, with: {by: {a: [3.0]}}}
+  d: {step: opened, in: frame}
+outputs: [a, b, c, d]
+"""
+    its = registry(CHANGING)
+    for _ in range(2):
+        pipeline = loads(text, "p.yaml", its)
+        before = pipeline.resolved()
+        for _ in range(2):
+            for result in pipeline.stream([frame(1), frame(2), frame(3)]):
+                assert dict(result) == {"a": 2.0, "b": 6.0, "c": 4.0, "d": 3.0}
+        assert pipeline.resolved() == before
+
+
+def test_a_step_that_keeps_state_begins_each_run_with_the_list_it_was_set_to() -> None:
+    text = "pipeline: p\nnodes:\n  a: {step: growing, in: frame}\noutputs: [a]\n"
+    pipeline = loads(text, "p.yaml", registry(CHANGING))
+    frames = [frame(1), frame(2), frame(3)]
+    for _ in range(2):
+        assert [r["a"] for r in pipeline.stream(frames)] == [2.0, 3.0, 4.0]
+    assert pipeline.nodes["a"].settings == {"c": [1.0]}
+
+
+def test_results_that_are_kept_stay_as_they_were() -> None:
+    class Counting:
+        def __init__(self) -> None:
+            self.seen: dict[str, float] = {"n": 0.0}
+
+        def __call__(self, image: Image) -> dict[str, float]:
+            self.seen["n"] += 1.0
+            return self.seen
+
+    text = "pipeline: p\nnodes:\n  a: {step: counting, in: frame}\noutputs: [a]\n"
+    pipeline = loads(text, "p.yaml", registry({"counting": Counting}))
+    results = [*pipeline.stream([frame(1), frame(2), frame(3)])]
+    assert [r["a"]["n"] for r in results] == [1.0, 2.0, 3.0]
+
+
+def noisy(image: Image, *, rng: np.random.Generator) -> float:
+    return float(rng.random())
+
+
+def test_bare_arrays_of_a_stream_are_numbered_and_differ_in_their_random_numbers() -> None:
+    text = "pipeline: p\nnodes:\n  a: {step: noisy, in: frame}\noutputs: [a]\n"
+    pipeline = loads(text, "p.yaml", registry({"noisy": noisy}))
+    arrays = np.zeros((5, 2, 2))
+    results = [*pipeline.stream(arrays)]
+    assert [r.frame.index for r in results] == [0, 1, 2, 3, 4]
+    assert len({r["a"] for r in results}) == 5
+    numbered = [Frame.of(a, index=i) for i, a in enumerate(arrays)]
+    assert [r["a"] for r in pipeline.stream(numbered)] == [r["a"] for r in results]
+    assert pipeline.run(arrays[0])["a"] == results[0]["a"]
+
+
+def test_frames_of_a_source_that_numbers_none_are_numbered_and_others_left() -> None:
+    number = Numbering()
+    given = [(0, ""), (0, ""), (0, ""), (0, "b"), (0, "b"), (7, "b"), (0, "b"), (1, "b")]
+    frames = [Frame(Image(np.zeros((2, 2))), i, label=label) for i, label in given]
+    assert [number(f).index for f in frames] == [0, 1, 2, 0, 1, 7, 0, 1]
+    with pytest.raises(ValueError, match="an index counts from 0, got -1"):
+        Frame.of(np.zeros((2, 2)), index=-1)
+
+
+def test_a_seed_below_0_is_told() -> None:
+    text = "pipeline: p\nnodes:\n  a: {step: noisy, in: frame}\noutputs: [a]\n"
+    pipeline = loads(text, "p.yaml", registry({"noisy": noisy}))
+    with pytest.raises(UsageError, match="seed: must be a whole number >= 0, got -1"):
+        pipeline.run(np.zeros((2, 2)), seed=-1)
