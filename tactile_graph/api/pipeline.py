@@ -121,7 +121,7 @@ class Pipeline(Graph):
         RuleError
             If the frame's quantity, shape or pitch breaks a rule of a step.
         """
-        result = self._runner(tuple(only or ()), seed)(_as_frame(frame))
+        result = self._runner(_asked(only), seed)(_as_frame(frame))
         if self.promises.waiting:
             self.promises.check(result)
         return result
@@ -144,7 +144,7 @@ class Pipeline(Graph):
         from tactile_graph.api.results import Results
 
         runner = self.runner(only, seed)
-        asked = tuple(only or self.outputs)
+        asked = _asked(only) or tuple(self.outputs)
         given = self.frames(seed) if frames is None else frames
         return Results(self, asked, self.results(given, runner))
 
@@ -240,7 +240,7 @@ class Pipeline(Graph):
         from tactile_graph.engine.runner import Runner, RunSettings
 
         settings = RunSettings(seed, verify, decider, after)
-        return Runner(self, tuple(only or self.outputs), Result, settings)
+        return Runner(self, _asked(only) or tuple(self.outputs), Result, settings)
 
     def _runner(self, only: tuple[str, ...], seed: int) -> Runner[Result]:
         """Return a fresh runner, or the last one where no step keeps state."""
@@ -365,6 +365,11 @@ class Pipeline(Graph):
 
 def _unpickled(text: str, file: str, overrides: Overrides, source: SourceOverride) -> Pipeline:
     return Pipeline.of(resolve_again(parse_graph(text, file), overrides, source))
+
+
+def _asked(only: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the names asked for; one by itself is no sequence of letters."""
+    return (only,) if isinstance(only, str) else tuple(only or ())
 
 
 def _as_frame(frame: Any, index: int = 0) -> Frame:

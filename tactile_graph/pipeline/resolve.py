@@ -109,19 +109,20 @@ def _source(scope: Scope, replaced: SourceOverride) -> Source | None:
         step, given = replaced
     if step is None:
         return None
+    # Where another source was put in, the file says nothing of it.
+    tell = scope.document.problem if replaced is None else scope.document.problem_elsewhere
     try:
         signature = scope.registry.step(step, scope.document.file)
     except (UsageError, PluginError) as error:
-        scope.document.problem(f"source: {error}", "source", "step")
+        tell(f"source: {error}", "source", "step")
         return None
     if signature.kind is not Kind.SOURCE:
-        text = f"source: step {step!r} is no source: it yields no frames"
-        scope.document.problem(text, "source", "step")
+        tell(f"source: step {step!r} is no source: it yields no frames", "source", "step")
         return None
     values, troubles = validate_settings(signature, given)
     for path, message in troubles:
         where = f"{spelled(path)}: " if path else ""
-        scope.document.problem(f"source, {where}{message}", "source", "with", *path)
+        tell(f"source, {where}{message}", "source", "with", *path)
     return Source(signature, values, mark)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import types
 import typing
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any, Union, get_args, get_origin
 
 import annotated_types as at
@@ -14,6 +15,8 @@ from tactile_graph.quantities import unknown_quantity
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.steps.signature import Kind, Setting, Signature, strip, type_name
 
+RULES = ("annotated_types", "pydantic")
+"""Packages whose classes, beside a type, are rules that a value must keep."""
 _UNION = (Union, types.UnionType)
 _PLAIN: dict[Any, Any] = {bool: (bool,), int: (int,), float: (int, float), str: (str,)}
 _LIMITS: tuple[tuple[type, str, str, Callable[[Any, Any], bool]], ...] = (
@@ -39,9 +42,25 @@ def check_signature(signature: Signature) -> None:
 def _defaults(signature: Signature) -> Iterator[str]:
     for setting in signature.settings:
         if not setting.required:
+            what = f"default of setting {setting.name!r}"
             why = _misfit(setting, setting.annotation, setting.default)
             if why:
-                yield f"default of setting {setting.name!r} {why}, got {shown(setting.default)}"
+                yield f"{what} {why}, got {shown(setting.default)}"
+            elif _is_constrained(setting.annotation):
+                from tactile_graph.steps.settings import validate_settings  # loads pydantic
+
+                given = {setting.name: setting.default}
+                its = replace(signature, settings=(setting,))
+                yield from (f"{what} {told}" for _, told in validate_settings(its, given)[1])
+
+
+def _is_constrained(annotation: Any) -> bool:
+    """Return whether a setting has rules beside the limits that are looked at here."""
+    limits = tuple(kind for kind, *_ in _LIMITS)
+    return any(
+        type(rule).__module__.partition(".")[0] in RULES and not isinstance(rule, limits)
+        for rule in strip(annotation)[1]
+    )
 
 
 def _misfit(setting: Setting, annotation: Any, value: Any) -> str:

@@ -6,6 +6,7 @@ import inspect
 import types
 import typing
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
@@ -159,7 +160,7 @@ def strip(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
 
 
 def list_item(kind: Any) -> Any:
-    """Return X for ``list[X]``, ``tuple[X, ...]`` or ``Sequence[X]``, else None."""
+    """Return X for ``list[X]``, ``tuple[X, ...]`` or ``Sequence[X]``, else None, as for a set."""
     origin = get_origin(kind)
     if origin in (Union, types.UnionType):
         inner = [list_item(a) for a in get_args(kind) if a is not type(None)]
@@ -168,7 +169,7 @@ def list_item(kind: Any) -> Any:
     if origin is tuple:
         return args[0] if len(args) == 2 and args[1] is Ellipsis else None
     is_list = isinstance(origin, type) and issubclass(origin, Iterable) and len(args) == 1
-    return args[0] if is_list else None
+    return args[0] if is_list and not issubclass(origin, AbstractSet) else None
 
 
 def _pick(annotation: Any, kind: type) -> Any:

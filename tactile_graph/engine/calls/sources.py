@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.engine.outcomes.outcome import raised_at
-from tactile_graph.errors import DataError, TactileGraphError, text_of
+from tactile_graph.errors import DataError, Degenerate, Skip, TactileGraphError, text_of
 from tactile_graph.pipeline.graph import Source
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
@@ -39,6 +39,8 @@ def open_source(
     """
     try:
         yield from _frames(source, seed, report, in_stacks)
+    except (Degenerate, Skip) as error:  # words of steps, which go on with the next frame
+        raise DataError(f"source {source.name!r}", f"{error} ({raised_at(error)})") from error
     except TactileGraphError:
         raise
     except (Exception, SystemExit) as error:  # a source may raise anything

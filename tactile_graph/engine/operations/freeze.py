@@ -25,7 +25,7 @@ FROZEN: set[type] = {*IMMUTABLE, Image}
 
 
 def freeze(value: Any) -> Any:
-    """Return the value with every array in it read-only, every list a tuple, every dict a copy."""
+    """Return the value, arrays in it read-only, lists as tuples, dicts and sets copied."""
     kind = value.__class__
     if kind in FROZEN or value is None:
         return value
@@ -74,6 +74,8 @@ def _freeze_container(value: Any) -> Any:
         return tuple(freeze(v) for v in value)
     elif value.__class__ is dict:  # a step may give the one it keeps, and go on filling it
         return {key: freeze(item) for key, item in value.items()}
+    elif value.__class__ is set:
+        return value.copy()
     elif isinstance(value, dict):
         for item in value.values():
             freeze(item)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any
 
 from tactile_graph.errors import Degenerate, Skip, text_of
@@ -147,6 +149,8 @@ def _told_of(origin: str, kind: str, text: str, *rest: Any) -> Failed:
     return Failed(origin, type(kind, (Exception,), {})(text), *rest)
 
 
+_CORE = str(Path(__file__).parents[2]) + os.sep
+
 Outcome = Any
 """A value, or `Skipped`, or `Failed`; never None."""
 
@@ -226,11 +230,17 @@ def _describe(value: Any) -> str:
 
 
 def raised_at(error: BaseException) -> str:
-    """Return ``file:line in function`` of the innermost frame an error passed through."""
+    """Return ``file:line in function`` of the innermost frame an error passed through.
+
+    Frames of this package are left out where another's called them: it is that line which is wrong.
+    """
+    passed = list[tuple[str, int, str]]()
     traceback = error.__traceback__
-    if traceback is None:
-        return ""
-    while traceback.tb_next is not None:
+    while traceback is not None:
+        code = traceback.tb_frame.f_code
+        passed.append((code.co_filename, traceback.tb_lineno, code.co_name))
         traceback = traceback.tb_next
-    code = traceback.tb_frame.f_code
-    return f"{code.co_filename}:{traceback.tb_lineno} in {code.co_name}"
+    others = [where for where in passed if not where[0].startswith(_CORE)]
+    for file, line, name in (others or passed)[-1:]:
+        return f"{file}:{line} in {name}"
+    return ""

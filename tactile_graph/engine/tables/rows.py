@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
 from typing import Any
 
 import numpy as np
@@ -97,11 +98,21 @@ def as_data(value: Any, full: bool = True) -> Any:
         return _own_summary(value)
     if hasattr(value, "_asdict"):
         return {k: as_data(v, full) for k, v in value._asdict().items()}
+    if isinstance(value, frozenset | set):
+        return as_data(_in_order(value), full)
     if isinstance(value, list | tuple):
         data = [as_data(v, full) for v in value]
         numbers = len(data) > MOST_NUMBERS and not isinstance(data[0], dict)
         return _shape(len(data)) if numbers and not full else data
     return _record(value, full)
+
+
+def _in_order(value: AbstractSet[Any]) -> list[Any]:
+    """Return what is in a set in an order that is the same in every process."""
+    try:
+        return sorted(value)
+    except TypeError:
+        return sorted(value, key=repr)
 
 
 def _item(outcome: Skipped | Failed) -> dict[str, str]:

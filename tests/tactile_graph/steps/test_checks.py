@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import pytest
-from annotated_types import Ge, Lt
+from annotated_types import Ge, Len, Lt, MinLen, MultipleOf
+from pydantic import Field, StringConstraints
 
 from tactile_graph import Circle, Frame, Image, Mask
 from tactile_graph.errors import PluginError
@@ -26,6 +27,30 @@ def inside_union(image: Image, *, level: Annotated[float, Lt(1)] | None = 1.5) -
 
 
 def around_union(image: Image, *, level: Annotated[float | None, Lt(1)] = 1.5) -> Image:
+    return image
+
+
+def odd(image: Image, *, level: Annotated[int, MultipleOf(2), Ge(0)] = 3) -> Image:
+    return image
+
+
+def field(image: Image, *, level: Annotated[float, Field(gt=0)] = -1.0) -> Image:
+    return image
+
+
+def single(
+    image: Image,
+    *,
+    both: Annotated[list[float], Len(2, 2)] = [1.0],  # noqa: B006
+) -> Image:
+    return image
+
+
+def short(image: Image, *, name: Annotated[str, MinLen(3)] = "a") -> Image:
+    return image
+
+
+def pattern(image: Image, *, name: Annotated[str, StringConstraints(pattern="b+")] = "a") -> Image:
     return image
 
 
@@ -81,6 +106,11 @@ def returned(*, n: int = 3) -> Iterator[Frame]:
         (below, "step 'x': default of setting 'level' must be >= 3, got 1"),
         (inside_union, "step 'x': default of setting 'level' must be < 1, got 1.5"),
         (around_union, "step 'x': default of setting 'level' must be < 1, got 1.5"),
+        (odd, "step 'x': default of setting 'level' must be a multiple of 2, got 3"),
+        (field, "step 'x': default of setting 'level' must be > 0.0, got -1.0"),
+        (single, "default of setting 'both' list should have at least 2 items"),
+        (short, "default of setting 'name' must be a text, got 'a' (String should have at least 3"),
+        (pattern, "default of setting 'name' must be a text, got 'a' (String should match"),
         (text, "step 'x': default of setting 'level' must be int, got 'x'"),
         (yes, "step 'x': default of setting 'level' must be float, got True"),
         (none, "'level' must be float, or the annotation float | None, got None"),
@@ -117,6 +147,8 @@ def fine(
     anything: Any = None,
     mode: Literal["a", 3] = 3,
     factor: Annotated[int, Ge(1)] = 2,
+    even: Annotated[int, MultipleOf(2)] | None = None,
+    names: Annotated[tuple[str, ...], MinLen(1)] = ("a",),
 ) -> Annotated[Image, Quantity.like("image"), Grid.like("image", finer_by="factor")]:
     return image
 

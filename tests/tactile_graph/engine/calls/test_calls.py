@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 import pytest
 
+from helpers_graphs import STEPS as STEPS_OF_ALL
 from helpers_graphs import frame, registry
-from tactile_graph import Frame, Image, loads
+from tactile_graph import Degenerate, Frame, Image, loads
 from tactile_graph.engine.calls.sources import Numbering
 from tactile_graph.engine.outcomes.outcome import Failed
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import DataError, PipelineError, UsageError
 
 
 def scaled(image: Image, *, factor: int = 2, offset: int = 0) -> int:
@@ -199,3 +200,49 @@ def test_a_seed_below_0_is_told() -> None:
     pipeline = loads(text, "p.yaml", registry({"noisy": noisy}))
     with pytest.raises(UsageError, match="seed: must be a whole number >= 0, got -1"):
         pipeline.run(np.zeros((2, 2)), seed=-1)
+
+
+def bad_unit() -> Iterator[Frame]:
+    yield Frame.of(np.zeros((2, 2)), quantity="volts")
+
+
+def ended() -> Iterator[Frame]:
+    raise Degenerate("nothing more")
+    yield
+
+
+SOURCES = {"bad_unit": bad_unit, "ended": ended}
+FROM = "pipeline: p\nsource: {{step: {}}}\nnodes:\n  a: {{step: constant}}\noutputs: [a]\n"
+
+
+@pytest.mark.parametrize(
+    ("source", "words"),
+    [("bad_unit", "unknown quantity 'volts'"), ("ended", "source 'ended': nothing more")],
+)
+def test_what_a_source_raises_is_told_with_the_line_of_its_own_code(
+    source: str, words: str
+) -> None:
+    pipeline = loads(FROM.format(source), "p.yaml", registry({**STEPS_OF_ALL, **SOURCES}))
+    with pytest.raises(DataError, match=rf"test_calls\.py:\d+ in {source}\)") as caught:
+        list(pipeline.stream())
+    assert words in str(caught.value)
+
+
+def test_a_source_that_is_put_in_is_told_without_a_line_of_the_file() -> None:
+    pipeline = loads(FROM.format("ended"), "p.yaml", registry({**STEPS_OF_ALL, **SOURCES}))
+    for step, settings, words in (
+        ("endet", {}, "source: no step named 'endet'"),
+        ("constant", {}, "source: step 'constant' is no source"),
+        ("ended", {"n": 1}, "source, n: unknown setting 'n'"),
+    ):
+        with pytest.raises(PipelineError) as caught:
+            pipeline.with_source(step, **settings)
+        assert str(caught.value).startswith(words)
+        assert "p.yaml" not in str(caught.value)
+        assert "^" not in str(caught.value)
+
+
+def test_one_output_may_be_asked_for_by_its_name() -> None:
+    text = "pipeline: p\nnodes:\n  ab: {step: noisy, in: frame}\noutputs: [ab]\n"
+    pipeline = loads(text, "p.yaml", registry({"noisy": noisy}))
+    assert set(pipeline.run(np.zeros((2, 2)), only="ab")) == {"ab"}

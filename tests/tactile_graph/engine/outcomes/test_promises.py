@@ -153,6 +153,7 @@ def test_each_item_of_a_list_is_promised(registry: Registry) -> None:
         (np.ones(3), Sequence[float]), ((1, "a"), tuple[int, str]), (None, None),
         (CIRCLE, Circle | Ellipse), ("b", Literal["a", "b"]), ({"a": 1}, dict[str, int]),
         (Two(MASK, None), Two), (CIRCLE, Any), (np.ones(3), np.ndarray),
+        ({1, 2}, set[int]), (frozenset("a"), frozenset[str]),
     ],
 )  # fmt: skip
 def test_what_fits_a_type(value: Any, kind: Any) -> None:
@@ -164,6 +165,8 @@ def test_what_fits_a_type(value: Any, kind: Any) -> None:
     [
         (True, float, "promises float, but gave bool"),
         (1.5, int, "promises int, but gave float"),
+        ([1], set[int], "promises set[int], but gave a list of int"),
+        ({1}, list[int], "promises list[int], but gave set"),
         ("ab", list[str], "promises list[str], but gave str"),
         ((c for c in [CIRCLE]), Iterable[Circle], "promises Iterable[Circle], but gave generator"),
         ([CIRCLE, None], list[Circle], "promises list[Circle], but gave a list of Circle, Non"),

@@ -82,3 +82,10 @@ def test_long_lists_of_numbers_are_told_by_their_length_and_lists_of_records_who
 def test_a_summary_that_is_no_mapping_is_refused():
     with pytest.raises(PluginError, match=r"Summed\.summary\(\) must return a mapping, got list"):
         as_data(Summed(None, [1.0]), full=False)
+
+
+def test_sets_are_told_in_one_order() -> None:
+    assert as_data({30, 4, 100}) == [4, 30, 100]
+    assert as_data(frozenset({"b", "a"})) == ["a", "b"]
+    assert as_data({2, "a"}) in ([2, "a"], ["a", 2])
+    assert as_data({2, "a"}) == as_data({"a", 2})
