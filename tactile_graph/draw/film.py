@@ -30,6 +30,7 @@ from tactile_graph.draw.display import (
 )
 from tactile_graph.draw.film_files import RATE_HZ, Gif, Mp4, Picture
 from tactile_graph.draw.paint_strip import DASHES, Pen
+from tactile_graph.draw.strip import make_visible
 from tactile_graph.draw.strip_columns import Column
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, outcome_word
 from tactile_graph.engine.outcomes.outcomes import Outcomes
@@ -230,6 +231,7 @@ class _Painter:
             self._bar(pen.heat)
         self._title.set_text(_when(scene.frame))
         self._notes.set_text("\n".join(scene.notes))
+        make_visible(self._figure)
         canvas: Any = self._figure.canvas
         canvas.draw()
         shown = np.asarray(canvas.buffer_rgba())[..., :3]

@@ -16,6 +16,7 @@ from tactile_graph.draw.strip_columns import Column, columns, outcome_of
 from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.errors import UsageError, did_you_mean, one_of
 from tactile_graph.files import write_whole
+from tactile_graph.foreign_text import visible
 from tactile_graph.pipeline.graph import FRAME
 from tactile_graph.wires import Frame
 
@@ -113,12 +114,23 @@ def figure_bytes(figure: Figure, kind: str, dpi: float = DPI) -> bytes:
     import matplotlib as mpl
 
     dated = {"svg": "Date", "pdf": "CreationDate"}.get(kind)
+    make_visible(figure)
     buffer = io.BytesIO()
     with warnings.catch_warnings(), mpl.rc_context({"svg.hashsalt": "tactile-graph"}):
         # A name in a script that the font lacks is drawn as boxes; that harms nobody's run.
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
         figure.savefig(buffer, format=kind, dpi=dpi, metadata={dated: None} if dated else None)
     return buffer.getvalue()
+
+
+def make_visible(figure: Figure) -> None:
+    """Spell out in a figure's texts what is not seen; half of a character's code draws no glyph."""
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        assert isinstance(text, Text)
+        if (told := visible(text.get_text())) != text.get_text():
+            text.set_text(told)
 
 
 def _spread(results: list[Outcomes], most: int) -> list[Outcomes]:

@@ -30,7 +30,13 @@ from tactile_graph import Ellipse, Image, Points, Polygon, Rectangle, loads
 from tactile_graph.api.result import Result
 from tactile_graph.draw.colours import FAILED
 from tactile_graph.draw.display import cell_edges
-from tactile_graph.draw.strip import figure_png, picture_format, save_strip, strip_figure
+from tactile_graph.draw.strip import (
+    figure_bytes,
+    figure_png,
+    picture_format,
+    save_strip,
+    strip_figure,
+)
 from tactile_graph.errors import UsageError
 from tactile_graph.wires import Mask, TrueObject
 
@@ -358,6 +364,13 @@ def n_figures() -> int:
 
 
 @pytest.mark.slow
+def test_what_has_no_glyph_is_spelled_out() -> None:
+    figure = Figure()
+    text = figure.text(0.5, 0.5, "a\udc80\u202eb\nc")
+    assert figure_bytes(figure, "png").startswith(b"\x89PNG")
+    assert text.get_text() == "a\\udc80\\u202eb\nc"
+
+
 def test_knows_no_window_and_leaves_no_figure_behind(results) -> None:
     data = figure_png(strip_figure(results[:1], ["circle"]))
     assert data.startswith(b"\x89PNG")
