@@ -47,7 +47,11 @@ def is_scattered(kind: int, readings: Readings, p: Values) -> bool:
     return bool(4.0 * a * b >= SPARSE * readings.touched * readings.grid[2] ** 2)
 
 
+def fewness(readings: Readings) -> float:
+    """Return 0 where many elements are touched, up to 1 the fewer than `FEW` they are."""
+    return max(1.0 - readings.touched / FEW, 0.0)
+
+
 def looseness(readings: Readings) -> float:
     """Return the variance in cm^2 by which an outline is less certain where few are touched."""
-    few = max(1.0 - readings.touched / FEW, 0.0)
-    return few * (LOOSE * float(readings.grid[2])) ** 2
+    return fewness(readings) * (LOOSE * float(readings.grid[2])) ** 2

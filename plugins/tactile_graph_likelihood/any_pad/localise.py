@@ -25,6 +25,7 @@ from tactile_graph_likelihood.any_pad.left_open import (
     FEW,
     PATTERN,
     UNSEEN,
+    fewness,
     hidden_by,
     is_scattered,
     looseness,
@@ -100,6 +101,9 @@ MANY = 8.0
 
 FEW_POINTS = 64
 """Points in which the posterior of what is rather noise is looked at, as wide as the pad."""
+
+FINER = 2.0
+"""By how much more precisely an outline is sampled the fewer elements are touched."""
 
 PRESSURES: dict[str, list[float]] = {EVEN: [], **FIRST}
 """What each pressure estimates beside an even face's numbers, where its fit begins."""
@@ -444,13 +448,16 @@ class AnyPad:
             return self._with(noise, "contrast").posterior_around(
                 readings, _first(top, 1 + self._count), loose
             )
+        # Of few elements a point costs little, and the posterior is far from normal.
+        precision = self.told.precision / (1.0 + FINER * fewness(readings))
         if part == EVEN and not large:
             begin = np.append(point[: self._count], noise.contrast)
-            model = self._with(noise, "contrast")
+            model = changed(self._with(noise, "contrast"), precision=precision)
             if is_scattered(self.told.kind, readings, point):
                 model = changed(model, most_points=FEW_POINTS)
             return model.posterior_near(readings, begin, loose)
         model = self._with(noise, *([] if part == EVEN else [part]))
+        model = changed(model, precision=precision)
         mode = _first(top, self._count + len(PRESSURES[part]))
         return model.posterior_around(readings, mode, loose)
 

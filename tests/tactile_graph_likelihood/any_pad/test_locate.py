@@ -120,6 +120,20 @@ def test_a_quick_disc_is_sampled_where_it_is_vaguer_than_allowed():
 
 
 @pytest.mark.slow
+@many
+def test_of_few_elements_an_outline_is_sampled_as_much_more_precisely(monkeypatch):
+    step = LocateDisc()
+    frames = [*Bench(KINDS["small objects"], np.random.default_rng(3)).frames(24, "disc")]
+
+    def worth():
+        return np.mean([step.posterior(frame.image).equal_points for frame in frames])
+
+    finer = worth()
+    monkeypatch.setattr(localise, "FINER", 0.0)
+    assert finer > 2.0 * worth() > 2.0 * step._any_pad.told.precision**-2
+
+
+@pytest.mark.slow
 @plain
 def test_on_a_large_pad_a_quick_disc_is_the_disc():
     rng = np.random.default_rng(3)
