@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from tactile_graph import Pipeline, load, loads
-from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, text_of
+from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, shown, text_of
 from tactile_graph.foreign_text import visible
 from tactile_graph_live.server.messages import Fault
 
@@ -67,8 +67,17 @@ class Draft:
         Raises
         ------
         TactileGraphError
-            If that is not allowed.
+            If that is not allowed, or names a file outside the folders of the pipeline and of the
+            program: what is wrong with a file is told by lines of it.
         """
+        folders = [Path(self.pipeline.file).resolve().parent, Path.cwd()]
+        if value != self.given.get(node, {}).get(setting):
+            for text in texts_in(value):
+                if leads_out(text, folders):
+                    raise UsageError(
+                        f"{node}.{setting}: {shown(text)} leads out of {folders[-1]}; on the page "
+                        "only files in there can be named: others go into the pipeline's file"
+                    )
         here = _merged(self.set_here, {node: {setting: value}})
         return self._set(here)
 
@@ -108,6 +117,28 @@ def _merged(first: Settings, second: Settings) -> dict[str, dict[str, Any]]:
     for node, values in second.items():
         merged.setdefault(node, {}).update(values)
     return merged
+
+
+def texts_in(value: Any) -> Iterator[str]:
+    """Yield the texts of a setting's value, those of its items too."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping):
+        for item in value.values():
+            yield from texts_in(item)
+    elif isinstance(value, list | tuple):
+        for item in value:
+            yield from texts_in(item)
+
+
+def leads_out(text: str, folders: Sequence[Path]) -> bool:
+    """Return whether a text, as the path of a file from each folder, lies in none of them."""
+    try:
+        path = Path(text).expanduser()
+        found = [(folder / path).resolve() for folder in folders]
+    except (OSError, ValueError, RuntimeError):  # too long, or of no user: no file anybody has
+        return False
+    return not all(any(p.is_relative_to(folder) for folder in folders) for p in found)
 
 
 def faults(error: BaseException, file: str) -> tuple[Fault, ...]:

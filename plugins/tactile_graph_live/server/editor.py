@@ -68,9 +68,10 @@ class Editor:
         self._watched.take(draft.read_again)  # to know what else is read with it
         self.now = self._edited(draft, 1)
         self.trouble: Trouble | None = None
+        self._of_file: tuple[Fault, ...] = ()
         self._lock = asyncio.Lock()
         self._answer: asyncio.Future[Swapped] | None = None
-        self._late: dict[int, tuple[Edited, float]] = {}
+        self._late: dict[int, tuple[Edited, float, bool]] = {}
         self._waiting: dict[tuple[str, str], Any] = {}
 
     @property
@@ -101,9 +102,10 @@ class Editor:
             except Exception as error:  # a plugin may raise anything while it is imported
                 await asyncio.sleep(SETTLE_S)
                 if not self._watched.changed():
-                    self._tell(faults(error, self.now.draft.pipeline.file))
+                    self._of_file = faults(error, self.now.draft.pipeline.file)
+                    self._tell(self._of_file)
                 return
-            await self._apply(draft, began)
+            await self._apply(draft, began, of_file=True)
 
     def _read(self) -> Draft:
         found: list[Draft] = []
@@ -144,7 +146,7 @@ class Editor:
         if waiting is not None and not waiting.done() and answer.version == self._version:
             waiting.set_result(answer)
         elif (late := self._late.pop(answer.version, None)) is not None and not answer.error:
-            self._runs(*late, answer)
+            self._runs(answer, *late)
 
     def bench_died(self) -> None:
         """Wait no more for its answers."""
@@ -153,7 +155,7 @@ class Editor:
             died = "the process that runs the pipeline died of this change"
             self._answer.set_result(Swapped(self._version, died))
 
-    async def _apply(self, draft: Draft, began: float) -> None:
+    async def _apply(self, draft: Draft, began: float, of_file: bool = False) -> None:
         self._version += 1
         self._answer = asyncio.get_running_loop().create_future()
         restart = not draft.same_source(self.now.draft)
@@ -161,11 +163,14 @@ class Editor:
         edited = await unawaited(self._edited, draft, self._version)
         answer = await self._answered(self._answer)
         if self._answer.cancelled():
-            self._late[self._version] = edited, began
-        if answer.error:
-            self._tell((Fault(0, 0, answer.error),))
+            self._late[self._version] = edited, began, of_file
+        if not answer.error:
+            self._runs(answer, edited, began, of_file)
+        elif of_file:
+            self._of_file = (Fault(0, 0, answer.error),)
+            self._tell(self._of_file)
         else:
-            self._runs(edited, began, answer)
+            self._tell((Fault(0, 0, answer.error), *self._of_file))
 
     async def _answered(self, answer: asyncio.Future[Swapped]) -> Swapped:
         """Return the bench's answer, or that there was none."""
@@ -179,14 +184,16 @@ class Editor:
         slow = f"it is not ready after {SWAP_S:g} s; it will run if it gets so"
         return Swapped(self._version, slow)
 
-    def _runs(self, edited: Edited, began: float, answer: Swapped) -> None:
-        """Take note that another pipeline runs."""
+    def _runs(self, answer: Swapped, edited: Edited, began: float, of_file: bool) -> None:
+        """Take note that another pipeline runs: the file's, or what was set on the page."""
+        if of_file:
+            self._of_file = ()
         took_ms = round((time.perf_counter() - began) * 1e3, 1)
         graph = replace(edited.graph, took_ms=took_ms, anew=answer.anew)
         self.now = replace(edited, graph=graph)
         self._changed(self.now)
-        if self.trouble is not None:
-            self._tell(())
+        if self.trouble is not None:  # a setting that is right makes no file right
+            self._tell(self._of_file)
 
     def _tell(self, errors: tuple[Fault, ...]) -> None:
         trouble = Trouble(self._version, errors)

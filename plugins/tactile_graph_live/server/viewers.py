@@ -216,12 +216,12 @@ class Viewers:
 
 
 async def _reading(websocket: WebSocket, asked: Callable[[Asked], None]) -> None:
-    """Hand on what a page asks for; ends when it goes, or says what is no message."""
+    """Hand on what a page asks for, as a message of no type what is none; ends when it goes."""
     while True:
         try:
             found = json.loads(await websocket.receive_text())
-        except (WebSocketDisconnect, KeyError, ValueError, RecursionError):
+        except (WebSocketDisconnect, KeyError):
             return
-        if not isinstance(found, dict):
-            return
-        asked(found)
+        except (ValueError, RecursionError):
+            found = None
+        asked(found if isinstance(found, dict) else {})

@@ -207,3 +207,36 @@ def test_no_name_leads_out_of_the_folder(tmp_path: Path, name: str) -> None:
     with pytest.raises(UsageError, match="a name is of letters"):
         save(tmp_path, name, FLOW)
     assert list(tmp_path.iterdir()) == []
+
+
+READS = """\
+pipeline: mine
+source: {step: sample, with: {name: discs}}
+nodes:
+  footprint: {step: locate_disc, in: frame, with: {pad: pad.yaml}}
+outputs: [footprint]
+"""
+
+
+def test_the_page_names_no_file_outside_the_folders(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    inside, secret = tmp_path / "inside", tmp_path / "secret.yaml"
+    inside.mkdir()
+    secret.write_text("password: hunter2\n")
+    (inside / "pad.yaml").write_text("about: ours\n")
+    (inside / "other.yaml").write_text("about: another\n")
+    (inside / "link.yaml").symlink_to(secret)
+    (inside / "mine.yaml").write_text(READS)
+    monkeypatch.chdir(inside)
+    draft = Draft.of(tg.load(inside / "mine.yaml"))
+    for name in (str(secret), "../secret.yaml", "link.yaml", "~root/x", "/no/such", "x/../../y"):
+        for value in (name, [name], {"a": name}):
+            with pytest.raises(UsageError, match="leads out of") as caught:
+                draft.with_value("footprint", "pad", value)
+            assert "hunter2" not in str(caught.value)
+    for name in ("other.yaml", str(inside / "other.yaml"), "./other.yaml", "thesis"):
+        draft.with_value("footprint", "pad", name)
+    given = Draft(draft.pipeline, draft.base, {"footprint": {"pad": str(secret)}})
+    with pytest.raises(PipelineError):  # what the command line named may be named again
+        given.with_value("footprint", "pad", str(secret))

@@ -100,6 +100,26 @@ def test_a_file_that_is_wrong_is_told_and_changes_nothing(desk: Desk) -> None:
     assert desk.editor.trouble is None
 
 
+def test_a_file_that_is_wrong_stays_so_whatever_is_set_on_the_page(desk: Desk) -> None:
+    desk.save(FLOW.replace("threshold", "treshold"))
+    desk.play(desk.editor.reload)
+    (wrong,) = desk.troubles[0].errors
+    desk.play(lambda: desk.editor.set("footprint", "level_v", 0.02))
+    assert desk.level_v() == 0.02
+    assert desk.troubles[-1].errors == (wrong,)
+    desk.answer = lambda swap: Swapped(swap.version, "takes 8 x 8 cells")
+    desk.play(desk.editor.unset)
+    assert [f.text for f in desk.troubles[-1].errors] == ["takes 8 x 8 cells", wrong.text]
+    desk.answer = lambda swap: Swapped(swap.version)
+    desk.play(desk.editor.unset)
+    assert desk.troubles[-1].errors == (wrong,)
+    assert desk.editor.trouble is not None
+    desk.save(FLOW)
+    desk.play(desk.editor.reload)
+    assert desk.troubles[-1].errors == ()
+    assert desk.editor.trouble is None
+
+
 def test_what_the_bench_refuses_is_told_and_the_old_graph_stays(desk: Desk) -> None:
     desk.answer = lambda swap: Swapped(swap.version, "takes 8 x 8 cells")
     desk.play(lambda: desk.editor.set("footprint", "level_v", 0.02))
