@@ -5,7 +5,8 @@ A table seldom says what it is. The rules, in order:
 1. settings, then the names in a header, then words before the table, say what the columns are;
 2. a row, a column and a value: one cell a line;
 3. rows and columns told: a line of rows x columns values is a frame, one of columns a row;
-4. groups of equal lines between blank lines (or lines such as ``Frame 3``): stacked matrices;
+4. groups of equal lines between blank lines (or lines such as ``Frame 3``): stacked matrices,
+   unless between blank lines each has a time of its own or cells lie together as a frame's do;
 5. names of cells, a time or a number before the values: a frame a line;
 6. as many lines as columns, or nearly: one matrix;
 7. a square number of values a line: a frame a line;

@@ -193,6 +193,17 @@ class Table:
                 return groups, run
         return [sum(groups)], ENDLESS
 
+    @property
+    def n_parts(self) -> int:
+        """How many groups the rows are of which numbers are known."""
+        starts = np.cumsum([0, *self.groups[0][:-1]])
+        return int(np.count_nonzero(starts < len(self.rows)))
+
+    @cached_property
+    def is_parted_by_words(self) -> bool:
+        """Whether lines such as ``Frame 3`` or brackets say where a matrix begins."""
+        return any(FRAME_LINE.fullmatch(line) or opens_matrix(line) for line in self.lines)
+
     @cached_property
     def is_torn(self) -> bool:
         """Whether no two groups of rows are of one size, as where words stand here and there."""

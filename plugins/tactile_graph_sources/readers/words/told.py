@@ -14,7 +14,9 @@ from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.words.names import NOTHING_TOLD, ColumnsTold
 
 _ASKED = re.compile(r"\b(?:give|name|say|settings?)\b(.*)", re.DOTALL)
-_LIKELY = re.compile(r"(\d+) x (\d+)(?: cells)?(?=, as they lie\))|could be (\d+) x (\d+)")
+_LIKELY = re.compile(
+    r"(\d+) x (\d+)(?: cells)?(?=, as (?:they lie\)|cells lie together))|could be (\d+) x (\d+)"
+)
 _SETTINGS = ("rows", "columns", "sensor", "frame_column", "time_column", "value_column", "cells")
 MOST_CELLS = 4_000_000  # a damaged header must not ask for all memory there is
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -261,3 +262,76 @@ def test_a_square_number_of_values_is_a_square_frame_unless_the_cells_lie_otherw
 def test_a_lying_shape_is_refused(tmp_path: Path) -> None:
     with pytest.raises(DataError, match="6 rows and 10 columns, the settings say rows=7"):
         frames_of(write(tmp_path, stacked_text(WIDE)), rows=7)
+
+
+# -- blank lines between frames of a line each -------------------------------------------------
+
+
+def parted(lines: list[str], size: int) -> str:
+    """Return lines with a blank one after every ``size`` of them."""
+    return "".join(f"{line}\n" + "\n" * (k % size == size - 1) for k, line in enumerate(lines))
+
+
+@pytest.mark.parametrize(
+    ("stamp", "last_s"),
+    [
+        (lambda k: f"2024-01-01T10:00:{k:02d}", 29.0),
+        (lambda k: f"10:00:{k:02d}", 29.0),
+        (lambda k: f"{20 * k}", 0.58),
+        (lambda k: f"{20 * (k % 15)}", 0.28),
+        (lambda k: f"{k},{20 * k + 3}", 0.583),
+        (lambda k: f"{k}", None),
+    ],
+    ids=["dates", "times of day", "milliseconds", "begun anew", "numbers and times", "numbers"],
+)
+@pytest.mark.parametrize("side", [8, 12])
+def test_lines_with_a_time_of_their_own_are_frames_whatever_blank_lines_part_them(
+    stamp: Callable[[int], str], last_s: float | None, side: int, tmp_path: Path
+) -> None:
+    values = moving(30, side, side)
+    lines = [f"{stamp(k)},{x}" for k, x in enumerate(flat_text(values).splitlines())]
+    frames, _ = frames_of(write(tmp_path, parted(lines, 15)))
+    np.testing.assert_array_equal([f.image.values for f in frames], values)
+    assert frames[-1].time_s == pytest.approx(last_s)
+
+
+def test_blank_lines_between_lines_that_may_be_frames_are_asked_about(tmp_path: Path) -> None:
+    values = moving(30, 8, 8)
+    path = write(tmp_path, parted(flat_text(values).splitlines(), 10))
+    with pytest.raises(
+        DataError,
+        match=r"matrices \(then rows=10, columns=64\), or frames of 8 x 8, .* rows=8 --with colu",
+    ):
+        frames_of(path)
+    check(path, values, rows=8, columns=8)
+    check(path, values.reshape(3, 10, 64), rows=10, columns=64)
+
+
+@pytest.mark.parametrize(
+    "stamp",
+    [lambda k: f"{10 * k},", lambda k: f"10:00:{0.01 * k:06.3f} -> "],
+    ids=["milliseconds", "of a serial monitor"],
+)
+def test_rows_of_matrices_stay_rows_where_each_has_a_time(
+    stamp: Callable[[int], str], tmp_path: Path
+) -> None:
+    values = moving(30, 16, 16)
+    lines = flat_text(values.reshape(-1, 1, 16)).splitlines()
+    path = write(tmp_path, parted([f"{stamp(k)}{x}" for k, x in enumerate(lines)], 16))
+    check(path, values)
+
+
+def test_a_time_that_the_rows_of_a_matrix_share_is_no_cell(tmp_path: Path) -> None:
+    values = moving(6, 5, 7)
+    lines = flat_text(values.reshape(-1, 1, 7)).splitlines()
+    path = write(tmp_path, parted([f"{20 * (k // 5)},{x}" for k, x in enumerate(lines)], 5))
+    check(path, values)
+    assert [f.time_s for f in frames_of(path)[0]] == pytest.approx([0.02 * k for k in range(6)])
+
+
+def moving(n: int, rows: int, columns: int) -> np.ndarray:
+    """Return whole readings of a load that moves slowly over noise, shape (n, rows, columns)."""
+    y, x = np.mgrid[:rows, :columns]
+    noise = np.random.default_rng(0).normal(20, 1, (n, rows, columns))
+    apart = [(y - rows / 4 - 0.2 * k) ** 2 + (x - columns / 1.6 + 0.3 * k) ** 2 for k in range(n)]
+    return np.round(noise + 800 * np.exp(-np.array(apart) / 9))
