@@ -270,9 +270,11 @@ def _long(base: Layout, table: Table) -> Layout:
 
 def _spaced(base: Layout, table: Table, apart: tuple[float, float]) -> Layout:
     """Return the layout of a long table whose places are so far apart, and the pitch they give."""
-    if apart == (1.0, 1.0):
-        return base
     factors = [length_unit(table.named.names[base.roles[role]]) for role in ("row", "column")]
+    places = table.rows[:, [base.roles["row"], base.roles["column"]]]
+    whole = (np.nanmedian(np.round(places, 6) % 1, axis=0) == 0.0).all()
+    if apart == (1.0, 1.0) and whole and not all(factors):
+        return base
     said = base.said
     if factors[0] and factors[1] and said.pitch_cm is None:
         said = replace(said, pitch_cm=(apart[1] * factors[1], apart[0] * factors[0]))

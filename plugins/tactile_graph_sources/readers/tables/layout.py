@@ -55,8 +55,8 @@ class Layout:
         Column of the date, where that of clock holds times of day alone.
     time_format : str
         Of the column of clock, where the settings say it.
-    spacing : (float, float)
-        Distance of rows and of columns in the numbers of a long table: 1, or what positions have.
+    spacing : (float, float), optional
+        Distance of rows and of columns where a long table holds positions, not their numbers.
     sensor : (int, str), optional
         The column that says which sensor a line is of, and the one that is read.
     first : (float, float)
@@ -87,7 +87,7 @@ class Layout:
     part: tuple[int, float] | None = None
     date: int | None = None
     time_format: str = ""
-    spacing: tuple[float, float] = (1.0, 1.0)
+    spacing: tuple[float, float] | None = None
     first: tuple[float, float] = (0.0, 0.0)
     sensor: tuple[int, str] | None = None
     said: Described = field(default_factory=Described)

@@ -150,7 +150,7 @@ def test_long_cells_left_out_are_invalid_and_repeated_ones_dropped(tmp_path: Pat
     [
         ("0,1,x,5", "no cell: 'x' is no number"),
         ("0,1,2", "no cell: 3 values, not 4"),
-        ("0,-1,2,5", "no cell: '0,-1,2,5' names no place on a pad"),
+        ("0,-1,2,5", "no cell: its row or column is below 0, those of others are not"),
         ("0,0.5,2,5", "names no place on a pad"),
         ("nan,0,2,5", "names no place on a pad"),
         ("0,1_0,2,5", "'_' is no part of a number"),
@@ -164,6 +164,44 @@ def test_a_damaged_line_of_a_long_table_is_named(line: str, what: str, tmp_path:
     np.testing.assert_array_equal([f.image.values for f in frames], WIDE)
     assert report.troubles[0][0] == f"{path}:8"
     assert what in report.troubles[0][1]
+
+
+@pytest.mark.parametrize("last", [0, 1, 400])
+@pytest.mark.parametrize(("up", "left"), [(2, 5), (0, 5), (-1, 5), (2, 0)])
+def test_cells_count_from_the_lowest_where_the_origin_lies_within_the_pad(
+    up: int, left: int, last: int, tmp_path: Path
+) -> None:
+    """``last``: how many of the lines there are before the first one below 0."""
+    cells = [f"{k},{c - left},{r - up},{v}" for (k, r, c), v in np.ndenumerate(moving(9, 6, 10))]
+    first = [x for x in cells if "-" not in x][:last]
+    rest = [x for x in cells if x not in first]
+    path = write(tmp_path, "\n".join(["frame,x,y,value", *first, *rest]))
+    frames, report = frames_of(path)
+    assert not report.troubles
+    by_number = sorted(frames, key=lambda f: f.image.values.tobytes())
+    expected = sorted(moving(9, 6, 10), key=lambda v: v.tobytes())
+    np.testing.assert_array_equal([f.image.values for f in by_number], expected)
+    assert report.counts[f"recordings with rows counted from {-up} and columns from {-left}"] == 1
+
+
+def test_positions_between_whole_numbers_are_read_wherever_their_origin_lies(
+    tmp_path: Path,
+) -> None:
+    values = moving(4, 6, 10)
+    cells = [f"{k},{c - 4.5},{r - 2.5},{v}" for (k, r, c), v in np.ndenumerate(values)]
+    check(write(tmp_path, "\n".join(["frame,x,y,value", *cells])), values)
+    cells = [f"{k},{c - 5},{r - 3},{v}" for (k, r, c), v in np.ndenumerate(values)]
+    path = write(tmp_path, "\n".join(["frame,x_mm,y_mm,value", *cells]))
+    check(path, values)
+    assert frames_of(path)[0][0].image.pitch_cm == pytest.approx((0.1, 0.1))
+
+
+def test_a_place_that_means_none_is_no_place(tmp_path: Path) -> None:
+    lines = long_text(WIDE).splitlines()
+    lines += [f"{k},-1,-1,0" for k in range(4)]
+    frames, report = frames_of(write(tmp_path, "\n".join(lines)))
+    np.testing.assert_array_equal([f.image.values for f in frames], WIDE)
+    assert len(report.troubles) == 4
 
 
 def test_long_cells_outside_the_told_shape_are_reported(tmp_path: Path) -> None:
