@@ -6,7 +6,6 @@ import hashlib
 import io
 import logging
 import os
-import re
 import warnings
 import zipfile
 from collections.abc import Iterable, Iterator
@@ -22,6 +21,7 @@ from tactile_graph_sources.readers.arrays.archive import opened
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
+from tactile_graph_sources.readers.sequence.by_number import in_order
 
 _MARKS = (b"\x89PNG", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+", b"\xff\xd8\xff", b"GIF8", b"BM")
 NAMES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".gif", ".bmp")
@@ -30,7 +30,6 @@ MOST_UNPACKED = 1 << 26
 MOST_PIXELS = 4_000_000
 MOST_TIMES = 200
 """Pixels for each byte of a file of many pages."""
-_NUMBER = re.compile(r"(\d+)")
 
 
 def recognises(head: Head) -> bool:
@@ -101,11 +100,6 @@ def pictures_in(folder: Path) -> list[str]:
     with os.scandir(folder) as entries:
         names = [e.name for e in entries if e.name.lower().endswith(NAMES) and e.is_file()]
     return in_order(names)
-
-
-def in_order(names: list[str]) -> list[str]:
-    """Return names of pictures by the numbers in them, so that 10 comes after 9."""
-    return sorted(names, key=lambda n: [(p.isdecimal(), p.zfill(20)) for p in _NUMBER.split(n)])
 
 
 def _holds_pictures(path: Path) -> bool:

@@ -27,7 +27,7 @@ class Stamps:
         self._first: float | None = None
         self._last = -math.inf
         self._days = 0.0
-        self._start = reading.index
+        self._start = reading.start
         self._last_count = -math.inf
         self._runs = 0
 
