@@ -48,7 +48,7 @@ def recording(
     skip: Annotated[int, Ge(0)] = 0,
     frame_column: str = "",
     time_column: str = "",
-    time_unit: Literal["", "s", "ms", "us", "ns", "min"] = "",
+    time_unit: Literal["", "s", "ms", "us", "ns", "min", "h", "d"] = "",
     time_format: str = "",
     value_column: str = "",
     cells: str = "",

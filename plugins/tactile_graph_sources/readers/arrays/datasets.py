@@ -14,7 +14,7 @@ from tactile_graph_sources.readers.arrays.stack import stack_of
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
-from tactile_graph_sources.readers.tables.layout import unit_of
+from tactile_graph_sources.readers.tables.layout import assumed_unit
 from tactile_graph_sources.readers.words.names import ROLES, named
 from tactile_graph_sources.readers.words.preamble import Described
 
@@ -162,12 +162,12 @@ def time_among(names: Iterable[str]) -> str:
 
 
 def _factor(reading: Reading, name: str, times: NDArray[Any]) -> float:
-    factor = named((bare(name), "")).time_factor
-    if factor is not None:
-        return factor
+    said = named((bare(name), ""))
+    if said.time_factor is not None:
+        return said.time_factor
     known = times[np.isfinite(times)].astype(np.float64)
-    factor, unit = unit_of(known)
-    reading.assume(f"times assumed to be in {unit}")
+    factor, note = assumed_unit(known, said.time_unit)
+    reading.assume(note)
     return factor
 
 

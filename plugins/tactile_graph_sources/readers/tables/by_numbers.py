@@ -21,7 +21,7 @@ from tactile_graph_sources.readers.tables.evidence import (
 )
 from tactile_graph_sources.readers.tables.extra import without_extra
 from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
-from tactile_graph_sources.readers.tables.layout import Layout, unit_of
+from tactile_graph_sources.readers.tables.layout import Layout, assumed_unit
 from tactile_graph_sources.readers.tables.table import ENDLESS, Table
 from tactile_graph_sources.readers.words.dialect import clock_s
 from tactile_graph_sources.readers.words.told import Told
@@ -216,8 +216,7 @@ def _time_unit(base: Layout, table: Table) -> dict[str, Any]:
     times = times_without_unit(table.lines, table.breaks)
     if not times:
         return {}
-    factor, unit = unit_of(np.array(times))
-    note = f"times assumed to be in {unit}"
+    factor, note = assumed_unit(np.array(times))
     return {"time_factor": factor, "assumed": (*base.assumed, note)}
 
 

@@ -111,10 +111,8 @@ def timed(base: Layout, table: Table) -> Layout:
     if table.named.time_factor is not None:
         return replace(base, time_factor=table.named.time_factor, part=table.named.part)
     times = table.rows[:, base.roles["time"]]
-    factor, unit = unit_of(times[np.isfinite(times)])
-    return replace(
-        base, time_factor=factor, assumed=(*base.assumed, f"times assumed to be in {unit}")
-    )
+    factor, note = assumed_unit(times[np.isfinite(times)], table.named.time_unit)
+    return replace(base, time_factor=factor, assumed=(*base.assumed, note))
 
 
 def are_days(times: Numbers) -> bool:
@@ -130,6 +128,21 @@ def are_days(times: Numbers) -> bool:
         and (steps >= 0).all()
         and 0.0 < np.median(steps) < _LONGEST_STEP
     )
+
+
+def assumed_unit(times: Numbers, unknown: str = "") -> tuple[float, str]:
+    """Return the factor of times to seconds, and the note on it.
+
+    Parameters
+    ----------
+    times : ndarray
+        Finite ones, as they come.
+    unknown : str
+        What the file calls their unit, where it is none that is known.
+    """
+    factor, unit = unit_of(times)
+    told = f", as {unknown!r} is no unit of time that is known (give time_unit)" if unknown else ""
+    return factor, f"times assumed to be in {unit}{told}"
 
 
 def unit_of(times: Numbers) -> tuple[float, str]:

@@ -19,7 +19,7 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
-from tactile_graph_sources.readers.tables.layout import unit_of
+from tactile_graph_sources.readers.tables.layout import assumed_unit
 from tactile_graph_sources.readers.tables.sensors import chosen, labels_of_lines
 from tactile_graph_sources.readers.words.dialect import clock_s
 from tactile_graph_sources.readers.words.names import ROLES, named
@@ -403,13 +403,13 @@ def _shape(reading: Reading, cells: Cells, said: Described) -> tuple[int, int]:
 def _time_factor(reading: Reading, entries: Entries) -> float:
     if not entries.times:
         return 1.0
-    factor = named((entries.time_name.rpartition(".")[2], "")).time_factor
-    if factor is not None:
-        return factor
+    said = named((entries.time_name.rpartition(".")[2], ""))
+    if said.time_factor is not None:
+        return said.time_factor
     numbers = [_number(t) if isinstance(t, str) else t for t in entries.times]
     times = [t for t in numbers if isinstance(t, int | float) and abs(t) < 1e300]
-    factor, unit = unit_of(np.array(times, dtype=np.float64))
-    reading.assume(f"times assumed to be in {unit}")
+    factor, note = assumed_unit(np.array(times, dtype=np.float64), said.time_unit)
+    reading.assume(note)
     return factor
 
 
