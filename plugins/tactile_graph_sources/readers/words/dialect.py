@@ -29,6 +29,8 @@ _CLOCK = re.compile(
     r"(\d{1,2}):(\d\d):(\d\d)(?:[.,:](\d{1,9}))?(?:Z|[+-]\d\d:?\d\d)?(?:\s?([AP])\.?M\.?)?",
     re.IGNORECASE,
 )
+_WHOLE_CLOCK = re.compile(_CLOCK.pattern.replace("[.,:]", "[.:]"), re.IGNORECASE)
+"""The same within a line, where what stands behind a comma may be another field."""
 _DATE = re.compile(r"\d{4}[-/.]\d\d?[-/.]\d\d?|\d\d?[-/.]\d\d?[-/.](?:\d{4}|\d\d)")
 _ELAPSED = re.compile(
     r"(?:(\d{1,2}):)?(\d{1,2}\.\d{1,9})|([-+]?\d+(?:\.\d+)?)\s*(s|secs?|ms|us|µs)"
@@ -78,7 +80,7 @@ def is_row(line: str) -> bool:
     """Return whether a line is a row of numbers, be a date, label or bracket among them or not."""
     if is_numeric(line):
         return True
-    words = _WORD.findall(_CLOCK.sub("", line).translate(_BRACKETS).replace('"', ""))
+    words = _WORD.findall(_WHOLE_CLOCK.sub("", line).translate(_BRACKETS).replace('"', ""))
     n = sum(1 for w in words if _NUMBER.fullmatch(w))
     return n >= 3 and 5 * n >= 3 * len(words)
 

@@ -302,6 +302,33 @@ def test_a_lying_shape_is_refused(tmp_path: Path) -> None:
         frames_of(write(tmp_path, stacked_text(WIDE)), rows=7)
 
 
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+@pytest.mark.parametrize(
+    "stamp",
+    [
+        "2024-01-01T10:00:{:02d}",
+        "2024-01-01 10:00:{:02d}",
+        "10:00:{:02d}",
+        "01.02.2024 10:00:{:02d}Z",
+    ],
+)
+def test_long_tables_begin_with_a_date_or_time_of_day(
+    stamp: str, separator: str, tmp_path: Path
+) -> None:
+    values = np.round(WIDE)
+    lines = [(stamp.format(k), r, c, f"{v:.0f}") for (k, r, c), v in np.ndenumerate(values)]
+    text = "\n".join(separator.join(map(str, x)) for x in [("time", "row", "col", "value"), *lines])
+    frames, report = frames_of(write(tmp_path, text))
+    assert not report.troubles
+    np.testing.assert_array_equal([f.image.values for f in frames], values)
+    assert [f.time_s for f in frames] == [0.0, 1.0, 2.0, 3.0]
+
+
+def test_what_all_lines_begin_with_is_no_name_of_rows_and_columns(tmp_path: Path) -> None:
+    lines = [f"left,{r},{c},{v:.0f}" for (r, c), v in np.ndenumerate(WIDE[0])]
+    check(write(tmp_path, "\n".join(["foot,row,col,value", *lines])), np.round(WIDE[:1]))
+
+
 # -- blank lines between frames of a line each -------------------------------------------------
 
 
