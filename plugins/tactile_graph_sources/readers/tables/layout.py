@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.tables.evidence import Numbers
 from tactile_graph_sources.readers.tables.table import Table
 from tactile_graph_sources.readers.words.dialect import Dialect, unquoted
@@ -59,6 +61,8 @@ class Layout:
         Distance of rows and of columns where a long table holds positions, not their numbers.
     sensor : (int, str), optional
         The column that says which sensor a line is of, and the one that is read.
+    unit : (int, str), optional
+        The column that says the unit of each line's values, and what it says of all.
     first : (float, float)
         The first row's and the first column's position, where they are positions.
     said : Described
@@ -90,6 +94,7 @@ class Layout:
     spacing: tuple[float, float] | None = None
     first: tuple[float, float] = (0.0, 0.0)
     sensor: tuple[int, str] | None = None
+    unit: tuple[int, str] | None = None
     said: Described = field(default_factory=Described)
     why: str = ""
     assumed: tuple[str, ...] = ()
@@ -104,6 +109,26 @@ def of_sensor(layout: Layout, line: str) -> bool:
     column, wanted = layout.sensor
     fields = layout.dialect.fields(line)
     return len(fields) <= column or unquoted(fields[column]) == wanted
+
+
+def refuse_other_unit(layout: Layout, where: str, fields: Sequence[str]) -> None:
+    """Refuse a line whose values are in another unit than those of the first lines.
+
+    Raises
+    ------
+    DataError
+        If it says one.
+    """
+    if layout.unit is None or len(fields) <= layout.unit[0]:
+        return
+    said = unquoted(fields[layout.unit[0]])
+    if said and said != layout.unit[1]:
+        raise DataError(where, several_units((layout.unit[1], said)))
+
+
+def several_units(units: Iterable[str]) -> str:
+    """Return what to say of values in several units."""
+    return f"its values are in several units ({', '.join(map(repr, units))}); write them in one"
 
 
 def timed(base: Layout, table: Table) -> Layout:

@@ -14,7 +14,7 @@ from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import FEWEST_COUNTED, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
-from tactile_graph_sources.readers.tables.layout import Layout, of_sensor
+from tactile_graph_sources.readers.tables.layout import Layout, of_sensor, refuse_other_unit
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 from tactile_graph_sources.readers.text.stamps import Stamps
 from tactile_graph_sources.readers.words.dialect import floats, refuse_underscore
@@ -332,6 +332,7 @@ def _one_by_one(
     for number, line in _content(batch):
         try:
             fields = layout.dialect.texts(line, layout.width)
+            refuse_other_unit(layout, reading.at(number), fields)
             texts = [fields[k] for k in where]
             refuse_underscore(" ".join(texts))
             values = floats(texts)

@@ -14,7 +14,7 @@ from fnmatch import fnmatch
 from typing import NamedTuple
 
 from tactile_graph.errors import did_you_mean, one_of
-from tactile_graph_sources.readers.words.units import value_unit
+from tactile_graph_sources.readers.words.units import UNIT_WORDS, value_unit
 
 _UNITS_OF_TIME = {
     1.0: "s sec secs second seconds sekunde sekunden seconde secondes segundos secondi",
@@ -245,7 +245,8 @@ def named(header: Sequence[str]) -> Named:
             roles["value"] = worded[0]
             quantity, scale = value_unit(_parts(names[worded[0]])[1])
     if {"row", "column"} <= roles.keys() and "value" not in roles:
-        left = [k for k in range(len(names)) if k not in roles.values() and names[k]]
+        left = [k for k, n in enumerate(names) if k not in roles.values() and n]
+        left = [k for k in left if names[k].lower() not in UNIT_WORDS]
         if len(left) == 1:
             roles["value"] = left[0]
             quantity, scale = value_unit(_parts(names[left[0]])[1] or names[left[0]])

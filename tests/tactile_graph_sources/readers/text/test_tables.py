@@ -329,6 +329,70 @@ def test_what_all_lines_begin_with_is_no_name_of_rows_and_columns(tmp_path: Path
     check(write(tmp_path, "\n".join(["foot,row,col,value", *lines])), np.round(WIDE[:1]))
 
 
+# -- what stands beside the cells --------------------------------------------------------------
+
+
+def beside(names: str, *texts: str) -> str:
+    """Return a long table with columns beside its cells, whose texts are the same in all lines."""
+    lines = [",".join([f"{k},{r},{c},{v:.0f}", *texts]) for (k, r, c), v in np.ndenumerate(WIDE)]
+    return "\n".join([f"frame,row,col,pressure,{names}", *lines])
+
+
+@pytest.mark.parametrize(
+    ("unit", "quantity", "factor"),
+    [("mmHg", "kilopascal", 0.133322387415), ("N/cm2", "kilopascal", 10.0), ("mV", "volt", 1e-3)],
+)
+def test_a_column_says_the_unit_of_long_and_of_wide_tables(
+    unit: str, quantity: str, factor: float, tmp_path: Path
+) -> None:
+    long = write(tmp_path, beside("unit", unit), "long.csv")
+    header = ",".join(["Einheit", *(f"r{r}c{c}" for r in range(6) for c in range(10))])
+    rows = flat_text(np.round(WIDE)).splitlines()
+    wide = write(tmp_path, "\n".join([header, *(f"{unit},{x}" for x in rows)]), "wide.csv")
+    for path in (long, wide):
+        frames, report = frames_of(path)
+        assert {f.image.quantity for f in frames} == {quantity}
+        np.testing.assert_allclose(
+            [f.image.values for f in frames], np.round(WIDE) * factor, rtol=1e-12
+        )
+        assert not any("left out" in what for what in report.counts)
+
+
+@pytest.mark.parametrize("after", [3, 900])
+def test_values_in_several_units_are_refused_however_late_the_second_comes(
+    after: int, tmp_path: Path
+) -> None:
+    lines = [f"{k // 60},{k % 60 // 10},{k % 10},{k % 7},mmHg" for k in range(960)]
+    lines[after:] = [line.replace("mmHg", "kPa") for line in lines[after:]]
+    path = write(tmp_path, "\n".join(["frame,row,col,pressure,unit", *lines]))
+    with pytest.raises(DataError, match=r"its values are in several units \('mmHg', 'kPa'\)") as e:
+        frames_of(path)
+    assert e.value.where == (str(path) if after < 400 else f"{path}:902")
+
+
+def test_a_unit_that_other_words_contradict_is_refused(tmp_path: Path) -> None:
+    path = write(tmp_path, "unit: kPa\n" + beside("unit", "mmHg"))
+    with pytest.raises(DataError, match="its column 'unit' says 'mmHg', other words of it another"):
+        frames_of(path)
+
+
+@pytest.mark.parametrize(
+    ("names", "texts", "told"),
+    [
+        ("pressure_kPa", ["7"], "pressure_kPa"),
+        ("unit,note", ["left", "calm"], "unit, note"),
+        (",", ["", ""], ""),
+    ],
+)
+def test_columns_of_a_long_table_that_are_not_read_are_told(
+    names: str, texts: list[str], told: str, tmp_path: Path
+) -> None:
+    frames, report = frames_of(write(tmp_path, beside(names, *texts)))
+    np.testing.assert_array_equal([f.image.values for f in frames], np.round(WIDE))
+    found = [what for what in report.counts if "left out" in what]
+    assert found == ([f"recordings with columns left out ({told})"] if told else [])
+
+
 # -- blank lines between frames of a line each -------------------------------------------------
 
 
