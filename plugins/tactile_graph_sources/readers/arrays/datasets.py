@@ -15,6 +15,7 @@ from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables.layout import assumed_unit
+from tactile_graph_sources.readers.words.compact import stamps_s
 from tactile_graph_sources.readers.words.names import ROLES, named
 from tactile_graph_sources.readers.words.preamble import Described
 
@@ -71,7 +72,10 @@ def _timed(
     if times is not None and len(times) != len(frames):
         reading.assume(f"times left out ({len(times)}, for {len(frames)} frames)")
         times = None
-    if times is not None:
+    stamps = None if times is None else stamps_s(times.astype(np.float64))
+    if stamps is not None:
+        times = stamps - stamps[0]
+    elif times is not None:
         factor = _factor(reading, held.times_name, times)
     said = held.said
     if times is None and said.frame_s is not None:

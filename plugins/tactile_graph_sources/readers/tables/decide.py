@@ -102,7 +102,7 @@ def layout_of(
     base = replace(base, roles=roles, date=date)
     if roles.get("time") is not None:
         base = timed(base, table)
-    base = replace(base, time_format=told.of_columns.time_format)
+    base = replace(base, time_format=told.of_columns.time_format or base.time_format)
     n_told = (told.rows or 0) * (told.columns or 0)
     empty = () if table.width in (n_told, told.columns) else table.empty
     apart = {*roles.values(), *table.labels, *table.dates, *empty}

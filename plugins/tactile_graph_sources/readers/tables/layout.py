@@ -10,6 +10,7 @@ import numpy as np
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.tables.evidence import Numbers
 from tactile_graph_sources.readers.tables.table import Table
+from tactile_graph_sources.readers.words.compact import HHMMSS, are_hhmmss, stamps_s
 from tactile_graph_sources.readers.words.dialect import Dialect, unquoted
 from tactile_graph_sources.readers.words.preamble import Described
 
@@ -132,11 +133,22 @@ def several_units(units: Iterable[str]) -> str:
 
 
 def timed(base: Layout, table: Table) -> Layout:
-    """Return the layout with the factor of its time; where nobody says the unit, it is assumed."""
+    """Return the layout with the factor of its time; where nobody says the unit, it is assumed.
+
+    Dates and times of day that are written as one number make the column one of clock.
+    """
     if table.named.time_factor is not None:
         return replace(base, time_factor=table.named.time_factor, part=table.named.part)
     times = table.rows[:, base.roles["time"]]
-    factor, note = assumed_unit(times[np.isfinite(times)], table.named.time_unit)
+    times = times[np.isfinite(times)]
+    clock = {"clock" if role == "time" else role: k for role, k in base.roles.items()}
+    if stamps_s(times) is not None:
+        return replace(base, roles=clock)
+    if are_hhmmss(times):
+        note = f"times taken for hours, minutes and seconds ({times[0]:06.0f})"
+        assumed = (*base.assumed, note)
+        return replace(base, roles=clock, time_format=HHMMSS, assumed=assumed)
+    factor, note = assumed_unit(times, table.named.time_unit)
     return replace(base, time_factor=factor, assumed=(*base.assumed, note))
 
 

@@ -9,6 +9,8 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tactile_graph_sources.readers.words.compact import stamp_s
+
 ERRORS = ("#n/a", "#nv", "#div/0!", "#value!", "#wert!", "#valeur!", "#num!", "#zahl!", "#ref!",
           "#bezug!", "#name?", "#null!")  # fmt: skip
 """What spreadsheets write into cells of which a formula gives no value."""
@@ -100,7 +102,7 @@ def clock_s(text: str) -> float | None:
     if found is None:
         elapsed = _ELAPSED.fullmatch(text)
         if elapsed is None:
-            return None
+            return stamp_s(text)
         minutes, seconds, number, unit = elapsed.groups()
         if unit:
             return float(number) * _UNIT_S[unit]
