@@ -48,7 +48,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     what, values = f"variable {name!r}", arrays[name]
     if not any(v.in_cells for v in found if v.name == name):
         values = frames_first(reading, values, what, times)
-    yield from frames_of(reading, Held(values, what, said, times, time))
+    yield from frames_of(reading, Held(values, what, said, times, time, known=True))
 
 
 def _loaded(reading: Reading) -> dict[str, Any]:
