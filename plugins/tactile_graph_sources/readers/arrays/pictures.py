@@ -25,6 +25,8 @@ from tactile_graph_sources.readers.sequence.by_number import in_order
 
 _MARKS = (b"\x89PNG", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+", b"\xff\xd8\xff", b"GIF8", b"BM")
 NAMES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".gif", ".bmp")
+_BMP_HEAD = 14
+"""Bytes, of which four are always 0."""
 MOST_BYTES = 1 << 28
 MOST_UNPACKED = 1 << 26
 MOST_PIXELS = 4_000_000
@@ -36,7 +38,9 @@ def recognises(head: Head) -> bool:
     """Return whether the file starts as pictures do, or is an archive of them."""
     if head.raw.startswith(b"PK\x03\x04"):
         return any(n.lower().encode() in head.raw for n in NAMES) and _holds_pictures(head.path)
-    return head.raw.startswith(_MARKS) and not (head.raw.startswith(b"BM") and head.lines)
+    return head.raw.startswith(_MARKS) and not (
+        head.raw.startswith(b"BM") and b"\0" not in head.raw[:_BMP_HEAD] and head.lines
+    )
 
 
 def read(reading: Reading) -> Iterator[Frame]:

@@ -211,7 +211,7 @@ def _chosen(named: Named, width: int, pattern: str) -> tuple[int, ...]:
 
 def named(header: Sequence[str]) -> Named:
     """Return what the names of a header say of the columns."""
-    names = tuple(n.strip().strip("\"'").strip() for n in header)
+    names = tuple(n.strip("\0").strip().strip("\"'").strip() for n in header)
     cells, places, numbers = _cells(names)
     roles: dict[str, int] = {}
     factor, unknown, quantity, scale = None, "", "raw", 1.0
