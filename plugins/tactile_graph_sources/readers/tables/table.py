@@ -303,7 +303,7 @@ def _sound(sample: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], Number
     damaged = wrong.any(axis=1)
     if not damaged.any() or damaged.mean() > MOST_DAMAGED:
         return sample, numbers
-    return [f for f, bad in zip(sample, damaged, strict=True) if not bad], numbers[~damaged]
+    return [sample[k] for k in np.flatnonzero(~damaged)], numbers[~damaged]
 
 
 def _number(text: str) -> float:
