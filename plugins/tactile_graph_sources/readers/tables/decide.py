@@ -85,6 +85,7 @@ def layout_of(
     trouble = (
         doubt_about(lines, table.dialect)
         or _unnamed_value(table, roles)
+        or _strange_time(table, roles)
         or _strange_column(table, roles)
         or _several_units(table)
         or _cells_by_line(table, roles)
@@ -96,7 +97,7 @@ def layout_of(
     if base.trouble:
         return base
     if table.named.is_long:
-        return _long(base, table)
+        return _long(base, table, told.of_columns)
     base = replace(base, assumed=(*base.assumed, *_strange_unit(table)))
     date = table.dates[0] if table.dates and _CLOCK in roles else None
     base = replace(base, roles=roles, date=date)
@@ -157,6 +158,20 @@ def _unnamed_value(table: Table, roles: dict[str, int]) -> str:
     return (
         f"its header names row and column, and the value could be any of {', '.join(left[:6])}; "
         "give value_column"
+    )
+
+
+def _strange_time(table: Table, roles: dict[str, int]) -> str:
+    """Return what to ask where the column of times holds neither numbers nor known times of day."""
+    k = roles.get("time", table.named.roles.get("time"))
+    if k is None or k not in table.words or k in (*table.clocks, *table.dates):
+        return ""
+    if roles.get(_CLOCK) is not None:
+        return ""
+    name = f"{table.named.names[k]!r}" if table.named.names else f"{k + 1}"
+    return (
+        f"its column {name} says {table.texts[0][k].strip()[:30]!r}, no number and no time that is "
+        "known; say how it is written as strptime takes it, such as time_format='%H:%M:%S'"
     )
 
 
@@ -273,9 +288,11 @@ def _left_out(table: Table, taken: Collection[int]) -> tuple[str, ...]:
 # -- one cell a line ---------------------------------------------------------------------------
 
 
-def _long(base: Layout, table: Table) -> Layout:
+def _long(base: Layout, table: Table, told: ColumnsTold) -> Layout:
     roles = dict(table.named.roles)
-    if table.clocks and roles.get("time", table.clocks[0]) in (*table.clocks, *table.dates):
+    if "time" in roles and told.time_format:
+        roles[_CLOCK] = roles.pop("time")
+    elif table.clocks and roles.get("time", table.clocks[0]) in (*table.clocks, *table.dates):
         roles.pop("time", None)
         roles[_CLOCK] = table.clocks[0]
     base = replace(base, date=table.dates[0] if table.dates and _CLOCK in roles else None)
@@ -283,7 +300,7 @@ def _long(base: Layout, table: Table) -> Layout:
     said = base.said
     if table.named.quantity != "raw":
         said = replace(said, quantity=table.named.quantity, factor=table.named.factor)
-    base = replace(base, kind="long", roles=roles, said=said)
+    base = replace(base, kind="long", roles=roles, said=said, time_format=told.time_format)
     base = timed(base, table) if "time" in roles else base
     base = replace(base, assumed=(*base.assumed, *_unread(base, table)))
     factors = {role: length_unit(names[role]) for role in ("row", "column")}

@@ -16,7 +16,10 @@ from tactile_graph_sources.readers.words.names import NOTHING_TOLD, ColumnsTold
 _LIKELY = re.compile(
     r"(\d+) x (\d+)(?: cells)?(?=, as (?:they lie\)|cells lie together))|could be (\d+) x (\d+)"
 )
-_SETTINGS = ("rows", "columns", "sensor", "frame_column", "time_column", "value_column", "cells")
+_SETTINGS = (
+    "rows", "columns", "sensor", "frame_column", "time_column", "value_column", "cells",
+    "time_format",
+)  # fmt: skip
 _SETTING = rf"(?:{'|'.join(_SETTINGS)})\b(?!=)"
 _ASKED = re.compile(
     rf"\b(?:give(?: the settings)?|name one with)\s+({_SETTING}(?:(?:,| and)\s+{_SETTING})*)"

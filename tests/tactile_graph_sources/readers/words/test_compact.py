@@ -1,4 +1,4 @@
-"""Dates and times of day that are written as one number."""
+"""Dates and times of day that are written as one number, and durations as pandas writes them."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from helpers_recordings import blobs, flat_text, frames_of, npz_bytes, write
+from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.words.compact import are_hhmmss, stamp_s, stamps_s
 
 VALUES = blobs(12, 5, 7)
@@ -53,6 +54,43 @@ def test_stamps_of_other_files_give_times_in_seconds_too(tmp_path: Path) -> None
     }.items():
         frames, _ = frames_of(write(tmp_path, content, name))
         assert [f.time_s for f in frames] == pytest.approx(list(range(12))), name
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        "0 days 00:00:00.{:06d}",
+        "1 days 23:59:59.{:06d}",
+        "-1 days +23:59:59.{:06d}",
+        "1 day, 0:00:00.{:06d}",
+        "P0DT0H0M0.{:06d}S",
+    ],
+)
+@pytest.mark.parametrize("name", ["", "time"])
+def test_durations_give_times(form: str, name: str, tmp_path: Path) -> None:
+    stamps: list[object] = [form.format(20_000 * k) for k in range(12)]
+    if "," in form:
+        stamps = [f'"{s}"' for s in stamps]
+    frames, report = frames_of(write(tmp_path, table(stamps, name)))
+    assert [f.time_s for f in frames] == pytest.approx([0.02 * k for k in range(12)])
+    assert not report.troubles
+    long = [f"{stamps[k]},{r},{c},{v}" for (k, r, c), v in np.ndenumerate(VALUES)]
+    frames, _ = frames_of(write(tmp_path, "\n".join(["time,row,col,value", *long])))
+    assert [f.time_s for f in frames] == pytest.approx([0.02 * k for k in range(12)])
+
+
+def test_times_that_nobody_knows_are_asked_about(tmp_path: Path) -> None:
+    path = write(tmp_path, table([f"0h{k:02d}" for k in range(12)]))
+    with pytest.raises(DataError, match=r"'timestamp' says '0h00', .* --with time_format=%H:%M:%S"):
+        frames_of(path)
+    frames, _ = frames_of(path, time_format="%Hh%M")
+    assert [f.time_s for f in frames] == [60.0 * k for k in range(12)]
+    long = [f"0h{k:02d},{r},{c},{v}" for (k, r, c), v in np.ndenumerate(VALUES)]
+    path = write(tmp_path, "\n".join(["time,row,col,value", *long]))
+    with pytest.raises(DataError, match="'time' says '0h00'"):
+        frames_of(path)
+    frames, _ = frames_of(path, time_format="%Hh%M")
+    assert [f.time_s for f in frames] == [60.0 * k for k in range(12)]
 
 
 def test_times_of_day_as_numbers_are_known_by_what_they_leap_by(tmp_path: Path) -> None:
