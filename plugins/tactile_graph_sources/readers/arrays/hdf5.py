@@ -61,7 +61,8 @@ def read(reading: Reading) -> Iterator[Frame]:
     held = _held(reading, h5py)
     if reading.head.raw.startswith(_MATLAB):
         # It counts the other way round.
-        held = held._replace(values=frames_first(reading, held.values.T, held.what, held.times))
+        values = frames_first(reading, held.values.T, held.what, held.times)
+        held = held._replace(values=values, known=True)
     yield from frames_of(reading, held)
 
 

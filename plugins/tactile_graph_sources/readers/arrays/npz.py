@@ -295,6 +295,8 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str, bool]:
         raise DataError(where, f"it holds no array but {one_of(arrays.held)}; {_UNPACK}")
     deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
     hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
+    if odd := [n for n, (s, t) in outlines.items() if t.kind == "c" and len(s) in (2, 3)]:
+        hint = f"; {odd[0]!r} is complex; save it as real numbers: {odd[0]}.real, or numpy.abs(…)"
     if objects := [n for n, (_, t) in outlines.items() if t.kind == "O"]:
         hint = (
             f"; {objects[0]!r} holds Python objects, which are not opened, as they may run any "
