@@ -14,7 +14,9 @@ from tactile_graph_sources.readers.tables.evidence import (
     climbs_in_parts,
     counts_up,
     is_sum,
+    line_period,
     rises,
+    row_lengths,
 )
 from tactile_graph_sources.readers.tables.layout import Layout, timed
 from tactile_graph_sources.readers.tables.table import Table
@@ -98,9 +100,12 @@ def _before_groups(base: Layout, table: Table, extra: int) -> Layout:
     if numbered is not base or table.is_parted_by_words:
         return numbered
     first, last = table.rows[:, cells[0]], table.rows[:, cells[-1]]
-    if extra == 1 and climbs_in_parts(first, table.n_parts):
-        return _led(base, table, cells)
     size = Counter(table.groups[0]).most_common(1)[0][0]
+    if extra == 1 and climbs_in_parts(first, table.n_parts):
+        # A column of cells may climb in each matrix, but then lines lie together as its rows do.
+        rest = table.rows[:, cells[1:]]
+        if row_lengths(rest) and line_period(rest) != size:
+            return _led(base, table, cells)
     if _is_of_groups(first, size) and not _is_of_groups(last, size):
         return _timed_by(replace(base, cells=cells[1:]), table, None, cells[0])
     if len(cells) < 3 or not _climbs_on(first) or _climbs_on(last):

@@ -450,6 +450,13 @@ def test_rows_of_matrices_stay_rows_where_each_has_a_time(
     check(path, values)
 
 
+def test_a_column_that_climbs_in_each_matrix_is_one_of_cells(tmp_path: Path) -> None:
+    values = moving(20, 12, 17) + 10.0 * np.arange(12)[:, None]
+    values[:, :, 0] = 100.0 + 10.0 * np.arange(12)
+    lines = flat_text(values.reshape(-1, 1, 17)).splitlines()
+    check(write(tmp_path, parted(lines, 12)), values)
+
+
 def test_a_time_that_the_rows_of_a_matrix_share_is_no_cell(tmp_path: Path) -> None:
     values = moving(6, 5, 7)
     lines = flat_text(values.reshape(-1, 1, 7)).splitlines()
