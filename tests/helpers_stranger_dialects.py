@@ -218,7 +218,7 @@ def _others() -> Iterator[Dialect]:
         "".join(f"{k:08x}: 0c0e 0c0b 0d0e 110d  ....\n" for k in range(9)),
         "are hexadecimal",
     )
-    yield _refused("NumPy, complex numbers", npz(frames=SQUARE[:1] + 1j), "no matrix")
+    yield _refused("NumPy, complex numbers", npz(frames=SQUARE[:1] + 1j), "is complex")
     yield _refused(
         "NumPy, cells in a row",
         npz(frames=OBLONG.reshape(12, 60)),

@@ -27,6 +27,7 @@ _FORMATS = {
     "node-images": "arrays.node_images:STORE",
     "picture-folder": "arrays.pictures:FOLDER",
     "recording-store": "arrays.stored_frames:STORE",
+    "numbered-files": "sequence.numbered:FOLDER",
 }
 
 

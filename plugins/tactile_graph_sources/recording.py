@@ -21,6 +21,7 @@ from tactile_graph_sources.readers.choosing.formats import format_of, format_of_
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
+from tactile_graph_sources.readers.sequence.by_number import in_order, out_of_order
 from tactile_graph_sources.readers.sequence.garbage import stacks_without_garbage, without_garbage
 from tactile_graph_sources.readers.sequence.in_ranges import ranges_of_recordings
 from tactile_graph_sources.readers.sequence.labels import labels_of
@@ -28,6 +29,7 @@ from tactile_graph_sources.readers.sequence.leaps import stacks_with_leaps_told,
 from tactile_graph_sources.readers.words.names import ColumnsTold
 from tactile_graph_sources.readers.words.told import Told, as_typed
 
+MOST_NAMED = 5
 Length = Annotated[float, Gt(0)]
 
 
@@ -46,7 +48,7 @@ def recording(
     skip: Annotated[int, Ge(0)] = 0,
     frame_column: str = "",
     time_column: str = "",
-    time_unit: Literal["", "s", "ms", "us", "ns", "min"] = "",
+    time_unit: Literal["", "s", "ms", "us", "ns", "min", "h", "d"] = "",
     time_format: str = "",
     value_column: str = "",
     cells: str = "",
@@ -119,7 +121,7 @@ def recording(
         skip=skip,
     )
     index = 0
-    for one, label in _files(path):
+    for one, label in _files(path, report):
         for frame in opened(one, told, report, label).frames:
             yield frame if frame.index == index else frame.with_index(index)
             index += 1
@@ -141,7 +143,7 @@ def recording_stacked(
     columns = ColumnsTold(frame_column, time_column, value_column, cells, time_unit, time_format)
     told = Told.of(columns, **placed)
     index = 0
-    for one, label in _files(path):
+    for one, label in _files(path, report):
         for some in opened(one, told, report, label, in_stacks=not told.skip).frames:
             yield some.with_index(index) if isinstance(some, Frame) else some.numbered(index)
             index += 1 if isinstance(some, Frame) else len(some)
@@ -151,13 +153,19 @@ recording.stacked = recording_stacked  # type: ignore[attr-defined]
 recording.ranges = ranges_of_recordings  # type: ignore[attr-defined]
 
 
-def _files(path: Path | list[Path]) -> list[tuple[Path, str]]:
-    """Return the files, each with what its frames' labels begin with."""
+def _files(path: Path | list[Path], report: Report) -> list[tuple[Path, str]]:
+    """Return the files, each with what its frames' labels begin with; a doubtful order is told."""
     paths = [Path(p) for p in path] if isinstance(path, list) else [Path(path)]
     if not paths:
         raise ValueError("path is an empty list; give at least one file")
     for one in paths:
         _check_file(one)
+    if (found := out_of_order(paths)) is not None:
+        report.trouble(
+            str(found[0]),
+            f"is read after {found[1].name}, in the order in which the files are given; in the "
+            f"order of their numbers they are read as a folder of their own: {found[0].parent}",
+        )
     return [*zip(paths, labels_of(paths) if len(paths) > 1 else [""], strict=True)]
 
 
@@ -227,11 +235,16 @@ def _check_file(path: Path) -> None:
 
 
 def _no_recording(folder: Path) -> DataError:
-    held = sorted(p.name for p in folder.iterdir() if p.is_file())
+    held = in_order(p.name for p in folder.iterdir() if p.is_file())
     if not held:
         return DataError(str(folder), "is a directory without a file in it; give a file")
-    told = f"is a directory; give a file in it ({one_of(held, most=5)})"
+    some = ", ".join(held[:MOST_NAMED]) + (", …" if len(held) > MOST_NAMED else "")
+    told = f"is a directory; give a file in it ({some})"
     several = f", or all of them: {shlex.quote(str(folder))}/*" if len(held) > 1 else ""
+    if held != sorted(held):
+        several = (
+            ", or several in the order in which they are to be read (a shell's * puts 10 before 2)"
+        )
     return DataError(str(folder), told + several)
 
 

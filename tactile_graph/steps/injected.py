@@ -9,7 +9,7 @@ step last ran.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Annotated
 
 
@@ -24,6 +24,10 @@ TimeGap = Annotated[float | None, _Gap()]
 def is_time_gap(metadata: tuple[object, ...]) -> bool:
     """Return whether an annotation's metadata marks a `TimeGap`."""
     return any(isinstance(m, _Gap) for m in metadata)
+
+
+MOST_TOLD = 5
+"""Troubles that people are told word for word; of the others they are told how many there are."""
 
 
 class Report:
@@ -58,6 +62,12 @@ class Report:
             self.troubles.append((where, what))
         if self._listener is not None:
             self._listener(where, what)
+
+    def few_troubles(self) -> Iterator[str]:
+        """Yield the first troubles as lines for people, and how many more there are."""
+        yield from (f"{where}: {what}" for where, what in self.troubles[:MOST_TOLD])
+        if (n := self.counts["troubles"]) > MOST_TOLD:
+            yield f"… and {n - MOST_TOLD} more"
 
     def expect(self, n_frames: int) -> None:
         """Say how many more frames are coming, for progress bars."""

@@ -69,8 +69,8 @@ def identify(
     with answered_meanwhile():
         for frame in span.of(opened.frames(seed, report)):
             lines.add(runner(frame))
-    for where, what in report.troubles:
-        say(f"{where}: {what}", err=True)
+    for line in report.few_troubles():
+        say(line, err=True)
     lines.summarise()
     if lines.n_failed:
         click.get_current_context().exit(SOME_FAILED)

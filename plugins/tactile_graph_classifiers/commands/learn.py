@@ -95,8 +95,8 @@ def learn(
     tell_apart(store)
     for what, n in read.left_out.items():
         say(f"left out: {n} frames: {what}", err=True)
-    for where, what in report.troubles:
-        say(f"{where}: {what}", err=True)
+    for line in report.few_troubles():
+        say(line, err=True)
     if read.n_failed:
         click.get_current_context().exit(SOME_FAILED)
 

@@ -314,8 +314,8 @@ class _Run:
             self.people.print(f"{words_of(interrupted)} after {frames}", style="bold red")
         try:
             show(comparison, self.people)
-            for where, what in self.report.troubles[:10]:
-                self.people.print(f"source   {where}: {what}", style="cyan", soft_wrap=True)
+            for line in self.report.few_troubles():
+                self.people.print(f"source   {line}", style="cyan", soft_wrap=True)
         finally:  # whoever reads along may go away (| head); the files are wanted all the same
             written = list(self._written(comparison))
         for name in written:

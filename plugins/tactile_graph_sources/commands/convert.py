@@ -92,8 +92,8 @@ def convert(
     for what, count in report.counts.items():
         if what.startswith("recordings"):
             say(f"{what}: {count}", err=True)
-    for where, trouble in report.troubles:
-        say(f"{where}: {trouble}", err=True)
+    for line in report.few_troubles():
+        say(line, err=True)
     lost = [name for name in kept.names if name in writer.loses]
     if lost:
         say(f"left out, as a {target.suffix} has no place for it: {', '.join(lost)}", err=True)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.quantities import unit_of
+from tactile_graph.steps.injected import MOST_TOLD
 from tactile_graph.wires import Frame
 from tactile_graph_sources.inspection.look import Looked, Sensor
 from tactile_graph_sources.inspection.measure import Cells, Measured
@@ -17,7 +18,6 @@ from tactile_graph_sources.inspection.measure import Cells, Measured
 SHADES = " .:-=+*#%@"
 WIDEST, HIGHEST = 72, 32
 MOST_CELLS_NAMED = 8
-MOST_TROUBLES = 5
 
 
 def data_of(looked: Looked) -> dict[str, Any]:
@@ -59,10 +59,10 @@ def lines_of(looked: Looked) -> Iterator[str]:
         yield from _sensor(sensor, looked)
     for what, n in looked.counts.items():
         yield _line("counted", f"{what}: {n}")
-    for where, what in looked.troubles[:MOST_TROUBLES]:
+    for where, what in looked.troubles[:MOST_TOLD]:
         yield _line("", f"{where}: {what}")
-    if len(looked.troubles) > MOST_TROUBLES:
-        yield _line("", f"… and {len(looked.troubles) - MOST_TROUBLES} more")
+    if len(looked.troubles) > MOST_TOLD:
+        yield _line("", f"… and {len(looked.troubles) - MOST_TOLD} more")
 
 
 def _sensor(sensor: Sensor, looked: Looked) -> Iterator[str]:

@@ -19,6 +19,11 @@ MOST_LINES = 100_000
 """Lines by which a table is recognised; a sample has more where they are under ten bytes long."""
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 _ZEROS_IN = 200
+_LOOKED_AT, MOST_GARBAGE = 4096, 0.02
+"""Bytes that tell a text, and the share of them that a device may have garbled at its start."""
+_ZEROS = re.compile(rb"\0+")
+_GARBAGE = re.compile(rb"[^\t\r\n\f -~]")
+_TAR_AT, _TAR = 257, b"ustar"
 _PLAIN = re.compile(rb"[\t\r\n -~]+")
 
 
@@ -56,11 +61,26 @@ class Head:
     @cached_property
     def lines(self) -> list[str]:
         """The first lines of a text; empty for a binary file."""
-        if not self.encoding.startswith("utf-16") and b"\0" in self.raw[:4096]:
+        if not self.encoding.startswith("utf-16") and not self._is_text:
             return []
         text = self.raw.decode(self.encoding, "backslashreplace")
         lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
         return lines if self.whole else lines[:-1]
+
+    @property
+    def _is_text(self) -> bool:
+        """Whether the file starts as a text does, in which a few zeros may stand.
+
+        Serial devices send them where they are reset, and a disk that lost its power writes runs.
+        """
+        start = self.raw[:_LOOKED_AT]
+        if b"\0" not in start:
+            return True
+        if self.raw[_TAR_AT:].startswith(_TAR):  # texts, each behind a head with zeros
+            return False
+        runs, rest = len(_ZEROS.findall(start)), _ZEROS.sub(b"", start)
+        garbage = runs + len(_GARBAGE.findall(rest))
+        return (b"\n" in rest or b"\r" in rest) and garbage <= MOST_GARBAGE * len(rest)
 
     @cached_property
     def layout(self) -> Layout | None:

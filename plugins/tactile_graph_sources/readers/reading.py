@@ -61,6 +61,16 @@ class Reading:
         self.in_stacks = False
         """Whether frames are taken as stacks, where the file holds them so."""
 
+    def of_part(self, head: Head) -> Reading:
+        """Return the reading of one of the files that make up this recording, from its next frame.
+
+        What is told once for a recording is not told again, and a gap goes over to the next file.
+        """
+        part = Reading(head, self.told, self.report, self.index, self.label)
+        part.start, part.sensors = self.start, self.sensors
+        part._fresh, part._gaps = self._fresh, self._gaps
+        return part
+
     def text(self) -> Iterator[tuple[int, str]]:
         """Yield line numbers from 1 and lines without their ends, whatever ends them.
 

@@ -185,6 +185,7 @@ class _Run:
     form_of_table: Table | None = None
     quantity: str = "raw"
     last_frame_s: float = field(default_factory=time.monotonic)
+    n_stalled: int = 0
     error: Exception | None = None
     compiling: int | None = None
     """The process that still compiles when the frames are done."""
@@ -309,11 +310,16 @@ class _Run:
 
     def _trouble(self, where: str, what: str) -> None:
         """Tell a trouble at once when no frame comes: closing lines would be too late."""
-        if time.monotonic() - self.last_frame_s > STALLED_S:
+        from tactile_graph.steps.injected import MOST_TOLD
+
+        if time.monotonic() - self.last_frame_s <= STALLED_S:
+            return
+        self.n_stalled += 1
+        if self.n_stalled <= MOST_TOLD:
             self.stderr.print(f"{where}: {what}", style="yellow", soft_wrap=True)
 
     def _take(self, results: Result | Block[Result]) -> None:
-        self.last_frame_s = time.monotonic()
+        self.last_frame_s, self.n_stalled = time.monotonic(), 0
         first = self.tally.n == 0
         from tactile_graph.engine.outcomes.outcomes import Outcomes
 

@@ -23,7 +23,6 @@ from tactile_graph.engine.tables.columns import OutputColumns, values_of
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.stacks import Stack
 
-MOST_TROUBLES = 20
 LOOKED_THROUGH = 100
 """Frames at the beginning in which nodes are asked what they assume, and have to say."""
 COUNTS = (
@@ -425,11 +424,8 @@ def _source(report: Report) -> Iterator[Text]:
     told = {k: n for k, n in report.counts.items() if k not in ("frames", "troubles")}
     if told:
         yield _labelled("source", "cyan", ", ".join(f"{k}: {n}" for k, n in told.items()))
-    n = report.counts["troubles"]
-    for where, what in report.troubles[:MOST_TROUBLES]:
-        yield _labelled("source", "cyan", f"{where}: {what}")
-    if n > MOST_TROUBLES:
-        yield _labelled("source", "cyan", f"… and {n - MOST_TROUBLES} more troubles")
+    for line in report.few_troubles():
+        yield _labelled("source", "cyan", line)
 
 
 def _labelled(label: str, style: str, text: str) -> Text:

@@ -46,6 +46,14 @@ def test_there_and_back_again_nothing_is_lost(tmp_path: Path, made: list[Frame])
             assert a.image.pitch_cm == b.image.pitch_cm
 
 
+def test_of_many_troubles_the_first_are_told_and_how_many_there_are(tmp_path: Path) -> None:
+    lines = [",".join(["1"] * 64), *["1,2,3"] * 12, ",".join(["2"] * 64)]
+    (tmp_path / "a.csv").write_text("\n".join([*[lines[0]] * 20, *lines]))
+    output = run(tmp_path / "a.csv", tmp_path / "b.npz")
+    assert output.count("3 values, not 64") == 5
+    assert "… and 7 more" in output
+
+
 def test_a_table_and_back_with_what_it_cannot_say_told(tmp_path: Path, made: list[Frame]) -> None:
     output = run(tmp_path / "a.npz", tmp_path / "b.csv")
     assert "b.csv: 6 frames" in output

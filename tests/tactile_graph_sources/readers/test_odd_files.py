@@ -32,6 +32,47 @@ def test_a_quoted_number_with_a_comma_is_no_number_and_never_two(tmp_path: Path)
     assert Dialect().fields('"1,2') == ["1", "2"]  # one quote alone means nothing
 
 
+@pytest.mark.parametrize("before", [b"\0", b"\0\0\xff\0", b"\0" * 900, b"boot\0\r\n"])
+@pytest.mark.parametrize("place", [0, 2, 5])
+def test_zeros_that_a_device_sends_at_a_reset_cost_a_line_at_most(
+    before: bytes, place: int, tmp_path: Path
+) -> None:
+    y, x = np.mgrid[:8, :8]
+    values = [
+        np.round(800 * np.exp(-((y - 2) ** 2 + (x - 5 + 0.1 * k) ** 2) / 9)) for k in range(30)
+    ]
+    lines = [
+        f"{20 * k},{','.join(f'{v:.0f}' for v in m.ravel())}\r\n".encode()
+        for k, m in enumerate(values)
+    ]
+    lines[place] = before + lines[place]
+    path = tmp_path / "serial.log"
+    path.write_bytes(b"".join(lines))
+    report = Report()
+    frames = list(recording(path=path, report=report))
+    lost = [] if before.endswith(b"\n") else [place]
+    expected = np.delete(values, lost, axis=0)
+    np.testing.assert_array_equal([f.image.values for f in frames], expected)
+    assert [where for where, _ in report.troubles if lost] == [f"{path}:{k + 1}" for k in lost]
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        np.arange(900, dtype="<u2").tobytes(),
+        np.linspace(0, 50, 900).astype("<f4").tobytes(),
+        bytes(np.random.default_rng(0).integers(0, 60, 4000, dtype=np.uint8)),
+        b"1,2,3\n" * 20 + bytes(range(256)) * 4,
+        b"log.csv".ljust(257, b"\0") + b"ustar" + bytes(250) + b"1,2,3,4\n" * 500,
+    ],
+    ids=["shorts", "floats", "bytes", "words and bytes", "tar"],
+)
+def test_binary_data_stay_binary_whatever_texts_are_in_them(content: bytes, tmp_path: Path) -> None:
+    path = tmp_path / "a.bin"
+    path.write_bytes(content)
+    assert "binary data" in refused(path)
+
+
 def test_arrays_that_cannot_be_read_say_why(tmp_path: Path) -> None:
     path = tmp_path / "a.npy"
     np.save(path, np.zeros((4, 4)))

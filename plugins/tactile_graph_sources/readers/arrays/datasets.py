@@ -14,7 +14,8 @@ from tactile_graph_sources.readers.arrays.stack import stack_of
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
-from tactile_graph_sources.readers.tables.layout import unit_of
+from tactile_graph_sources.readers.tables.layout import assumed_unit
+from tactile_graph_sources.readers.words.compact import stamps_s
 from tactile_graph_sources.readers.words.names import ROLES, named
 from tactile_graph_sources.readers.words.preamble import Described
 
@@ -39,6 +40,8 @@ class Held(NamedTuple):
     times : ndarray, shape (n,), optional
         None where there are none.
     times_name : str
+    known : bool
+        Whether the frames of three axes are known to lie along the first.
     """
 
     values: NDArray[Any]
@@ -46,6 +49,7 @@ class Held(NamedTuple):
     said: Described
     times: NDArray[Any] | None = None
     times_name: str = ""
+    known: bool = False
 
 
 def frames_of(reading: Reading, held: Held) -> Iterator[Any]:
@@ -66,12 +70,16 @@ def _timed(
 ) -> tuple[NDArray[Any], NDArray[np.float64] | None, dict[str, Any]]:
     """Return matrices, their times, and what the file says of all of them."""
     _refuse_lone_matrix(reading, held)
-    frames = stack_of(reading, held.values, held.what)
+    held = _along_times(reading, held)
+    frames = stack_of(reading, held.values, held.what, "known" if held.known else "asked")
     times, factor = held.times, 1.0
     if times is not None and len(times) != len(frames):
         reading.assume(f"times left out ({len(times)}, for {len(frames)} frames)")
         times = None
-    if times is not None:
+    stamps = None if times is None else stamps_s(times.astype(np.float64))
+    if stamps is not None:
+        times = stamps - stamps[0]
+    elif times is not None:
         factor = _factor(reading, held.times_name, times)
     said = held.said
     if times is None and said.frame_s is not None:
@@ -79,6 +87,18 @@ def _timed(
     times_s = None if times is None else times.astype(np.float64) * factor
     told = {"factor": said.factor, "pitch_cm": said.pitch_cm, "quantity": said.quantity}
     return frames, times_s, told
+
+
+def _along_times(reading: Reading, held: Held) -> Held:
+    """Return a stack with its frames along the first axis, if its times tell where they lie."""
+    told = reading.told.rows is not None and reading.told.columns is not None
+    if held.known or told or held.times is None or held.values.ndim != 3:
+        return held
+    n, n_first, n_last = len(held.times), held.values.shape[0], held.values.shape[-1]
+    if n == n_last != n_first:
+        reading.assume(f"frames taken to lie along the last axis, as there are {n} times")
+        return held._replace(values=np.moveaxis(held.values, -1, 0), known=True)
+    return held._replace(known=n == n_first != n_last)
 
 
 def _refuse_lone_matrix(reading: Reading, held: Held) -> None:
@@ -162,12 +182,12 @@ def time_among(names: Iterable[str]) -> str:
 
 
 def _factor(reading: Reading, name: str, times: NDArray[Any]) -> float:
-    factor = named((bare(name), "")).time_factor
-    if factor is not None:
-        return factor
+    said = named((bare(name), ""))
+    if said.time_factor is not None:
+        return said.time_factor
     known = times[np.isfinite(times)].astype(np.float64)
-    factor, unit = unit_of(known)
-    reading.assume(f"times assumed to be in {unit}")
+    factor, note = assumed_unit(known, said.time_unit)
+    reading.assume(note)
     return factor
 
 

@@ -61,7 +61,8 @@ def read(reading: Reading) -> Iterator[Frame]:
     held = _held(reading, h5py)
     if reading.head.raw.startswith(_MATLAB):
         # It counts the other way round.
-        held = held._replace(values=frames_first(reading, held.values.T, held.what, held.times))
+        values = frames_first(reading, held.values.T, held.what, held.times)
+        held = held._replace(values=values, known=True)
     yield from frames_of(reading, held)
 
 
@@ -111,7 +112,7 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
         raise DataError(where, f"the HDF5 file cannot be read: {str(error)[:120]}") from error
     said = described(lines)
     what = f"datasets {frames[0]!r} to {frames[-1]!r}" if frames else f"dataset {name!r}"
-    return Held(values, what, said, times, time)
+    return Held(values, what, said, times, time, bool(frames))
 
 
 def _refuse_cells(where: str, numbers: Mapping[str, Any], others: list[str]) -> None:

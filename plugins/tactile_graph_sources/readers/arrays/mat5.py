@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import zlib
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,10 +26,20 @@ _CODECS = {16: "utf-8", 17: "utf-16", 18: "utf-32"}
 _MATRIX, _PACKED = 14, 15
 _CELL, _STRUCT, _CHAR, _NUMBERS = 1, 2, 4, range(6, 16)
 _COMPLEX = 0x0800
+_OPAQUE = 17
+_UNREAD = {3: "an object", 5: "sparse", 16: "a function", _OPAQUE: "an object"}
 
 
 class DamagedError(Exception):
     """The file is no file of this format, or is damaged."""
+
+
+@dataclass(frozen=True)
+class Unread:
+    """A variable whose values are not read: ``kind`` says what it is, such as ``complex``."""
+
+    kind: str
+    shape: tuple[int, ...] = ()
 
 
 class _Element(NamedTuple):
@@ -45,7 +56,7 @@ def variables(path: Path) -> dict[str, Any]:
     dict
         Arrays of numbers without axes of length 1, texts, structs as dicts, and cell arrays and
         arrays of structs as lists in MATLAB's order. What is none of these (complex and sparse
-        matrices, objects, functions) is None.
+        matrices, objects, functions) is an `Unread`, what is empty None.
 
     Raises
     ------
@@ -121,6 +132,8 @@ def _matrix(data: memoryview, order: str, depth: int) -> tuple[str, Any]:
     if not len(data):
         return "", np.empty(0)
     flags, dims, name = (e.data for e in _first(data, order, 3))
+    if len(flags) == 8 and np.frombuffer(flags, f"{order}u4")[0] & 0xFF == _OPAQUE:
+        return bytes(dims).decode("latin-1"), Unread(_UNREAD[_OPAQUE])  # it has a name, no size
     if len(flags) != 8 or len(dims) % 4 or not 8 <= len(dims) <= 128:
         raise DamagedError("a matrix has no size")
     word = int(np.frombuffer(flags, f"{order}u4")[0])
@@ -147,8 +160,12 @@ def _value(word: int, shape: tuple[int, ...], rest: list[_Element], order: str, 
         return _matrices(rest, math.prod(shape), order, depth)
     if kind == _STRUCT:
         return _structs(rest, math.prod(shape), order, depth)
-    if not rest or word & _COMPLEX:
+    if kind in _UNREAD:
+        return Unread(_UNREAD[kind], shape)
+    if not rest:
         return None
+    if word & _COMPLEX:
+        return Unread("complex", shape)
     if kind == _CHAR:
         return _text(rest[0], order)
     return np.squeeze(_array(rest[0], shape, order)) if kind in _NUMBERS else None

@@ -13,14 +13,21 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.arrays.datasets import Held, chosen, frames_of, time_among
-from tactile_graph_sources.readers.arrays.mat5 import DamagedError, variables
+from tactile_graph_sources.readers.arrays.datasets import (
+    Held,
+    chosen,
+    frames_of,
+    is_stack,
+    time_among,
+)
+from tactile_graph_sources.readers.arrays.mat5 import DamagedError, Unread, variables
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.words.preamble import described
 
 _MARKS = (b"\x00\x01IM", b"\x01\x00MI")
+_AS_REAL = {"complex": "{0} = abs({0})", "sparse": "{0} = full({0})"}
 LONGEST_SIDE = 4
 """Times both others: a longer axis is the frames'."""
 
@@ -39,8 +46,11 @@ def read(reading: Reading) -> Iterator[Frame]:
         If the file is damaged, no stack or several could be meant, or its axes can be read two
         ways.
     """
-    found = list(_variables("", _loaded(reading)))
+    everything = list(_variables("", _loaded(reading)))
+    found = [v for v in everything if not isinstance(v.value, Unread)]
     arrays = {v.name: np.asarray(v.value) for v in found if not isinstance(v.value, str)}
+    if not any(n == reading.told.sensor for n in arrays):
+        _refuse_unread(reading, everything, arrays)
     name = chosen(reading, {n: a.shape for n, a in arrays.items()}, "variable")
     time = time_among(n for n, a in arrays.items() if 1 < a.size == max(a.shape))
     times = arrays[time].ravel() if time else None
@@ -48,7 +58,31 @@ def read(reading: Reading) -> Iterator[Frame]:
     what, values = f"variable {name!r}", arrays[name]
     if not any(v.in_cells for v in found if v.name == name):
         values = frames_first(reading, values, what, times)
-    yield from frames_of(reading, Held(values, what, said, times, time))
+    yield from frames_of(reading, Held(values, what, said, times, time, known=True))
+
+
+def _refuse_unread(
+    reading: Reading, found: list[_Variable], arrays: dict[str, NDArray[Any]]
+) -> None:
+    """Refuse a file whose frames are of a kind that is not read, and say which and what to do."""
+    asked = reading.told.sensor
+    unread = {v.name: v.value for v in found if isinstance(v.value, Unread)}
+    if asked:
+        unread = {n: v for n, v in unread.items() if n == asked}
+    elif any(is_stack(a.shape) for a in arrays.values()):
+        return
+    else:
+        unread = {n: v for n, v in unread.items() if not arrays or is_stack(v.shape)}
+    if not unread:
+        return
+    name, value = next(iter(unread.items()))
+    shape = f" of shape {value.shape}" if value.shape else ""
+    real = _AS_REAL.get(value.kind, "{0} = double({0})").format(name)
+    raise DataError(
+        str(reading.path),
+        f"its variable {name!r}{shape} is {value.kind}, no matrix of real numbers; save it as "
+        f"such, in MATLAB: {real}; save('out.mat', '{name.partition('.')[0]}', '-v7')",
+    )
 
 
 def _loaded(reading: Reading) -> dict[str, Any]:

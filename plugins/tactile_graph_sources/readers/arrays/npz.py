@@ -25,7 +25,7 @@ from tactile_graph_sources.readers.arrays.datasets import (
     numbered,
     time_among,
 )
-from tactile_graph_sources.readers.arrays.stack import stack_of
+from tactile_graph_sources.readers.arrays.stack import Axes, stack_of
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.choosing.others import document_in
 from tactile_graph_sources.readers.head import Head
@@ -244,12 +244,13 @@ def _head_of(member: IO[bytes]) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
     return shape, by_column, dtype
 
 
-def _checked(reading: Reading, arrays: Archive, name: str) -> NDArray[Any]:
+def _checked(reading: Reading, arrays: Archive, name: str, axes: Axes = "asked") -> NDArray[Any]:
     """Return an array of which its head alone, looked at first, says that it may be a stack."""
     what = f"array {name!r}"
     shape, dtype = arrays.outline(name)
     try:
-        stack_of(reading, np.broadcast_to(np.zeros((), dtype), shape), what)
+        outline = np.broadcast_to(np.zeros((), dtype), shape)
+        stack_of(reading, outline, what, "known" if axes == "known" else "outline")
     except ValueError as error:  # a shape that no array has
         raise DataError(arrays.where, f"{what} cannot be read: {error}") from error
     return arrays.load(name)
@@ -257,7 +258,7 @@ def _checked(reading: Reading, arrays: Archive, name: str) -> NDArray[Any]:
 
 def _foreign(reading: Reading, arrays: Archive) -> Held:
     """Return the only stack of another's archive, its times beside it."""
-    values, what = _only(reading, arrays)
+    values, what, known = _only(reading, arrays)
     outlines = {name: arrays.outline(name) for name in arrays.names}
     time = time_among(n for n, (s, t) in outlines.items() if len(s) == 1 and t.kind in "iufMm")
     single = [n for n, (s, t) in outlines.items() if math.prod(s) == 1 and t.kind in "iufU"]
@@ -265,25 +266,27 @@ def _foreign(reading: Reading, arrays: Archive) -> Held:
     times = arrays.load(time) if time else None
     if times is not None and len(times) and times.dtype.kind in "Mm":
         times, time = (times - times[0]) / np.timedelta64(1, "s"), "time_s"
-    return Held(values, what, said, times, time)
+    return Held(values, what, said, times, time, known)
 
 
-def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
+def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str, bool]:
+    """Return the only stack, what it is called, and whether numbers say that frames come first."""
     where, asked = str(reading.path), reading.told.sensor
     if asked:
         if asked not in arrays.names:
             near = did_you_mean(asked, arrays.names)
             raise DataError(where, f"no array {asked!r}, there are {one_of(arrays.names)}{near}")
         reading.sensors[asked] = None
-        return _checked(reading, arrays, asked), f"array {asked!r}"
+        return _checked(reading, arrays, asked), f"array {asked!r}", False
     outlines = {name: arrays.outline(name) for name in arrays.names}
     shapes_of = {n: s for n, (s, t) in outlines.items() if t.kind in "buif"}
     stacks = [n for n, s in shapes_of.items() if len(s) in (2, 3) or is_stack(s)]
     if len(stacks) > 1 and (frames := numbered({n: shapes_of[n] for n in stacks})):
         arrays.check_sizes(frames)
-        return np.stack([arrays.load(n) for n in frames]), f"arrays {frames[0]!r} to {frames[-1]!r}"
+        what = f"arrays {frames[0]!r} to {frames[-1]!r}"
+        return np.stack([arrays.load(n) for n in frames]), what, True
     if len(stacks) == 1:
-        return _checked(reading, arrays, stacks[0]), f"array {stacks[0]!r}"
+        return _checked(reading, arrays, stacks[0]), f"array {stacks[0]!r}", False
     shapes = one_of(f"{n} {shape}" for n, (shape, _) in outlines.items())
     if stacks:
         told = f"several arrays could be it ({shapes}); name one with sensor"
@@ -292,6 +295,8 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str]:
         raise DataError(where, f"it holds no array but {one_of(arrays.held)}; {_UNPACK}")
     deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
     hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
+    if odd := [n for n, (s, t) in outlines.items() if t.kind == "c" and len(s) in (2, 3)]:
+        hint = f"; {odd[0]!r} is complex; save it as real numbers: {odd[0]}.real, or numpy.abs(…)"
     if objects := [n for n, (_, t) in outlines.items() if t.kind == "O"]:
         hint = (
             f"; {objects[0]!r} holds Python objects, which are not opened, as they may run any "
@@ -333,7 +338,10 @@ def _ours(reading: Reading, arrays: Archive) -> _Ours:
     """Return a recording of ours; all but ``values`` is optional in it."""
     reading.is_own = True
     arrays.check_sizes([name for name in OURS if name in arrays.names])
-    values = stack_of(reading, _checked(reading, arrays, "values"), "array 'values'")
+    # Who writes our files says the quantity, and that frames lie along the first axis.
+    axes: Axes = "known" if "quantity" in arrays.names else "asked"
+    values = _checked(reading, arrays, "values", axes)
+    values = stack_of(reading, values, "array 'values'", axes)
     n = len(values)
     valid = arrays.optional("valid", values.shape, "b")
     times = arrays.optional("time_s", (n,), "fiu")

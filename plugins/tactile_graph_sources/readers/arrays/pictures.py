@@ -6,7 +6,6 @@ import hashlib
 import io
 import logging
 import os
-import re
 import warnings
 import zipfile
 from collections.abc import Iterable, Iterator
@@ -22,22 +21,26 @@ from tactile_graph_sources.readers.arrays.archive import opened
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
+from tactile_graph_sources.readers.sequence.by_number import in_order
 
 _MARKS = (b"\x89PNG", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+", b"\xff\xd8\xff", b"GIF8", b"BM")
 NAMES = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".gif", ".bmp")
+_BMP_HEAD = 14
+"""Bytes, of which four are always 0."""
 MOST_BYTES = 1 << 28
 MOST_UNPACKED = 1 << 26
 MOST_PIXELS = 4_000_000
 MOST_TIMES = 200
 """Pixels for each byte of a file of many pages."""
-_NUMBER = re.compile(r"(\d+)")
 
 
 def recognises(head: Head) -> bool:
     """Return whether the file starts as pictures do, or is an archive of them."""
     if head.raw.startswith(b"PK\x03\x04"):
         return any(n.lower().encode() in head.raw for n in NAMES) and _holds_pictures(head.path)
-    return head.raw.startswith(_MARKS) and not (head.raw.startswith(b"BM") and head.lines)
+    return head.raw.startswith(_MARKS) and not (
+        head.raw.startswith(b"BM") and b"\0" not in head.raw[:_BMP_HEAD] and head.lines
+    )
 
 
 def read(reading: Reading) -> Iterator[Frame]:
@@ -101,11 +104,6 @@ def pictures_in(folder: Path) -> list[str]:
     with os.scandir(folder) as entries:
         names = [e.name for e in entries if e.name.lower().endswith(NAMES) and e.is_file()]
     return in_order(names)
-
-
-def in_order(names: list[str]) -> list[str]:
-    """Return names of pictures by the numbers in them, so that 10 comes after 9."""
-    return sorted(names, key=lambda n: [(p.isdecimal(), p.zfill(20)) for p in _NUMBER.split(n)])
 
 
 def _holds_pictures(path: Path) -> bool:

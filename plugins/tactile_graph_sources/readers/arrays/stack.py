@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from math import isqrt
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,13 +20,22 @@ FEWEST_ALONG, MOST_ALONG = 4, 100
 ALIKE, UNLIKE = 2.5, 4.0
 """Times the difference of neighbours along one axis that those along another are, at most where
 they are axes of one kind, and at least where not."""
+VERY_ALIKE, CLEARER = 1.5, 2.0
+"""The same where neither is so: at most, and times more than the axes of the other reading."""
 MAD_TO_SD = 1.4826
 _AS_REAL = "such, in Python: numpy.save('out.npy', array.{})"
 LAST_IS_TIME = 4
 """Times the other two: a last axis longer than that is more likely the frames'."""
 
 
-def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
+Axes = Literal["asked", "outline", "known"]
+"""Whether frames may lie along another axis than the first: the values are asked, the shape alone
+is, as of an array that is not read yet, or it is known that they do not."""
+
+
+def stack_of(
+    reading: Reading, array: NDArray[Any], name: str, axes: Axes = "asked"
+) -> NDArray[Any]:
     """Return the array as matrices along its first axis, shape (N, rows, columns); a view.
 
     Parameters
@@ -39,6 +48,8 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
         Numbers on 2 or 3 axes.
     name : str
         What messages call it.
+    axes : str
+        Whether it is ``asked`` which axis is the frames'.
 
     Raises
     ------
@@ -70,7 +81,10 @@ def stack_of(reading: Reading, array: NDArray[Any], name: str) -> NDArray[Any]:
             f"save it as {_as_matrices(array.shape)}",
         )
     if rows is None or columns is None:
-        _refuse_two_readings(where, array, name)
+        if array.ndim == 2:
+            _refuse_frames_in_a_row(where, array, name)
+        elif axes != "known":
+            _ask_axes(reading, array, name, axes)
     told = "as rows and columns say" if rows and columns else "a matrix along each first index"
     reading.recognised(f"{name} of shape {array.shape}, {told}")
     array = array[None] if array.ndim == 2 else array
@@ -93,23 +107,41 @@ def without_single_axes(array: NDArray[Any]) -> NDArray[Any]:
     return array.squeeze(tuple(extra[: array.ndim - 3])) if array.ndim > 3 and extra else array
 
 
-def _lies_last(array: NDArray[Any]) -> bool:
-    """Return whether the frames may lie along the last axis, by how neighbours differ.
+def _axes_told(array: NDArray[Any]) -> str:
+    """Return which axis the values say is the frames': ``first``, ``last``, empty where neither.
 
-    Those along rows and along columns differ alike, those along time more or less than they. Of
-    each axis' differences what every cell shows, which noise gives along all of them, is left out.
+    Neighbours along rows and along columns differ alike, those along time more or less than they.
+    Of each axis' differences what every cell shows, which noise gives along all of them, is left
+    out.
     """
     if min(array.shape) < FEWEST_ALONG:
-        return False
+        return ""
     values = np.nan_to_num(array[:MOST_ALONG, :MOST_ALONG, :MOST_ALONG].astype(np.float64))
     values = np.clip(values, -1e30, 1e30)
     along = [np.abs(np.diff(values, axis=k)) for k in range(3)]
-    noise = MAD_TO_SD * max(float(np.median(steps)) for steps in along)
-    first, middle, last = (_beyond(steps, noise) for steps in along)
-    if min(first, middle) <= noise:
-        return False
-    alike = max(first, middle) < ALIKE * min(first, middle)
-    return alike and (last > UNLIKE * max(first, middle) or last < min(first, middle) / UNLIKE)
+    noise = MAD_TO_SD * min(float(np.median(steps)) for steps in along)
+    apart = [_beyond(steps, noise) for steps in along]
+    first, middle, last = (max(d, noise / 2.0, 1e-30) for d in apart)
+    if _fits(first, middle, last) and min(apart[:2]) > noise:
+        return "last"
+    return "first" if _fits(last, middle, first) and min(apart[1:]) > noise else ""
+
+
+def _fits(one: float, other: float, time: float) -> bool:
+    """Return whether two axes are more likely those of a frame than the second one and the third.
+
+    Parameters
+    ----------
+    one, other, time : float
+        How much neighbours along each axis differ.
+    """
+    across, along = _ratio(one, other), _ratio(other, time)
+    unlike = time > UNLIKE * max(one, other) or time < min(one, other) / UNLIKE
+    return (across < ALIKE and unlike) or (across < VERY_ALIKE and along > CLEARER * across)
+
+
+def _ratio(one: float, other: float) -> float:
+    return max(one, other) / min(one, other)
 
 
 def _beyond(steps: NDArray[Any], noise: float) -> float:
@@ -117,31 +149,33 @@ def _beyond(steps: NDArray[Any], noise: float) -> float:
     return math.sqrt(max(0.0, float(np.mean(steps**2)) - noise**2))
 
 
-def _refuse_two_readings(where: str, array: NDArray[Any], name: str) -> None:
-    """Refuse an array whose axes another reading fits as well or better; it is named."""
-    shape = array.shape
-    if array.ndim == 2:
-        lines, cells = shape
-        side = isqrt(cells)
-        square = side * side == cells and lines not in (1, cells)
-        long = max(shape) > LONGEST_UNTOLD * min(shape)
-        for what, in_a_row in (("row", array), ("column", array.T)):
-            lengths = row_lengths(in_a_row[:MOST_ALONG].astype(np.float64)) if lines > 1 else []
-            if lengths and in_a_row.shape[1] >= LEAST_FRAMED:
-                (n, m), each = lengths[0], in_a_row.shape[0]
-                raise DataError(
-                    where,
-                    f"{name} has shape {shape}: one matrix, or {each} frames of {n} x {m} with "
-                    f"their cells in a {what}, as they lie together; give rows and columns",
-                )
-        if lines > 1 and ((square and cells >= SMALLEST_SURE_SQUARE) or long):
-            as_frames = f"{lines} frames of {side} x {side}" if square else f"{lines} frames"
+def _refuse_frames_in_a_row(where: str, array: NDArray[Any], name: str) -> None:
+    """Refuse a matrix whose rows or columns may be frames; the reading is named."""
+    lines, cells = shape = array.shape
+    side = isqrt(cells)
+    square = side * side == cells and lines not in (1, cells)
+    long = max(shape) > LONGEST_UNTOLD * min(shape)
+    for what, in_a_row in (("row", array), ("column", array.T)):
+        lengths = row_lengths(in_a_row[:MOST_ALONG].astype(np.float64)) if lines > 1 else []
+        if lengths and in_a_row.shape[1] >= LEAST_FRAMED:
+            (n, m), each = lengths[0], in_a_row.shape[0]
             raise DataError(
                 where,
-                f"{name} has shape {shape}: one matrix, or {as_frames} with their cells in a row; "
-                "give rows and columns",
+                f"{name} has shape {shape}: one matrix, or {each} frames of {n} x {m} with "
+                f"their cells in a {what}, as they lie together; give rows and columns",
             )
-        return
+    if lines > 1 and ((square and cells >= SMALLEST_SURE_SQUARE) or long):
+        as_frames = f"{lines} frames of {side} x {side}" if square else f"{lines} frames"
+        raise DataError(
+            where,
+            f"{name} has shape {shape}: one matrix, or {as_frames} with their cells in a row; "
+            "give rows and columns",
+        )
+
+
+def _ask_axes(reading: Reading, array: NDArray[Any], name: str, axes: Axes) -> None:
+    """Refuse a stack whose frames as likely lie along the last axis; what nothing says is told."""
+    where, shape = str(reading.path), array.shape
     n, rows, columns = shape
     if columns in (3, 4) and min(n, rows) > 4:
         raise DataError(
@@ -150,10 +184,14 @@ def _refuse_two_readings(where: str, array: NDArray[Any], name: str) -> None:
             f"{columns} colours; give rows and columns, or save one colour",
         )
     last_is_time = (n == rows != columns) or columns > LAST_IS_TIME * max(n, rows)
-    last_is_time = last_is_time or _lies_last(array)
+    told = "" if axes == "outline" else _axes_told(array)
+    last_is_time = last_is_time or told == "last"
     if last_is_time and min(n, rows) > 1:
         raise DataError(
             where,
             f"{name} has shape {shape}: {n} frames of {rows} x {columns}, or {columns} frames of "
             f"{n} x {rows} along the last axis; give rows and columns",
         )
+    if axes == "asked" and not told and min(n, rows, columns) > 1:
+        what = f"frames assumed to lie along the first axis, {n} of {rows} x {columns}"
+        reading.assume(what)

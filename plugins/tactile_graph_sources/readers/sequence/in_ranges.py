@@ -21,6 +21,7 @@ from tactile_graph_sources.readers.choosing.formats import format_of, format_of_
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.laid import Laid
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.sequence.by_number import out_of_order
 from tactile_graph_sources.readers.sequence.garbage import (
     NEIGHBOURS,
     stacks_without_garbage,
@@ -55,7 +56,7 @@ def ranges_of_recordings(path: Path | list[Path], **settings: Any) -> Ranges | N
     """
     paths = [Path(p) for p in path] if isinstance(path, list) else [Path(path)]
     others = [value for name, value in settings.items() if name not in TOLD]
-    if any(others) or not paths:
+    if any(others) or not paths or out_of_order(paths) is not None:
         return None
     told = Told.of(**{name: value for name, value in settings.items() if name in TOLD})
     labels = labels_of(paths) if len(paths) > 1 else [""]

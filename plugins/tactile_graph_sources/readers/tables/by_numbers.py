@@ -12,6 +12,7 @@ import numpy as np
 from tactile_graph_sources.readers.tables.breaks import times_without_unit
 from tactile_graph_sources.readers.tables.evidence import (
     CLEAR,
+    climbs_in_parts,
     is_one_row,
     is_sum,
     line_period,
@@ -20,8 +21,9 @@ from tactile_graph_sources.readers.tables.evidence import (
 )
 from tactile_graph_sources.readers.tables.extra import without_extra
 from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
-from tactile_graph_sources.readers.tables.layout import Layout, unit_of
+from tactile_graph_sources.readers.tables.layout import Layout, assumed_unit
 from tactile_graph_sources.readers.tables.table import ENDLESS, Table
+from tactile_graph_sources.readers.words.dialect import clock_s
 from tactile_graph_sources.readers.words.told import Told
 
 SMALLEST_SURE_SQUARE = 64
@@ -59,12 +61,13 @@ def unplaced(base: Layout, table: Table, told: Told) -> Layout:
             base = replace(base, assumed=(*base.assumed, note))
         if told.rows is None and told.columns is None:
             base = _without_sums(base, table, rows)
+        base = _of_lines_told(base, table)
         return replace(
             base,
             kind=kind,
             rows=rows,
             blank_run=run if len(groups) > 1 else ENDLESS,
-            roles={},
+            roles={role: k for role, k in base.roles.items() if role == "time"},
             breaks=table.breaks,
             header_line=table.header_line,
             why=why,
@@ -75,9 +78,19 @@ def unplaced(base: Layout, table: Table, told: Told) -> Layout:
     return _flat(base, table, told, width, why)
 
 
+def _of_lines_told(base: Layout, table: Table) -> Layout:
+    """Return the layout of matrices with what of their lines' numbers and clocks is not read."""
+    said, apart = table.named.names, sorted(k for r, k in base.roles.items() if r != "time")
+    if not apart:
+        return base
+    names = [(said[k] if said else "") or f"column {k + 1}" for k in apart]
+    note = f"columns left out that are no cells ({', '.join(names)})"
+    return replace(base, assumed=(*base.assumed, note))
+
+
 def _decide(table: Table, base: Layout, told: Told, lead: bool) -> tuple[str, int, str]:
     """Return the kind of table, the rows of a matrix where it is stacked, and why."""
-    cells, width, groups = table.rows[:, base.cells], len(base.cells), table.groups[0]
+    width, groups = len(base.cells), table.groups[0]
     usual = Counter(groups).most_common(1)[0][0] if groups else 0
     n, said = sum(groups), "rows and columns are told"
     if told.columns is not None:
@@ -92,24 +105,58 @@ def _decide(table: Table, base: Layout, told: Told, lead: bool) -> tuple[str, in
         if width % told.rows == 0 or len(groups) < 2:
             return "flat", 0, said
     if len(groups) > 1 and usual > 1 and not (lead and table.is_torn):
-        framed = bool(table.breaks) and width >= LEAST_FRAMED and row_lengths(cells)
-        if framed:
-            rows, columns = framed[0]
-            return (
-                "unclear",
-                0,
-                (
-                    f"every {usual} lines of {width} values a line of words: matrices of "
-                    f"{usual} x {width} cells, or frames of {rows} x {columns}, as cells lie "
-                    "together; give rows and columns"
-                ),
-            )
-        if width == 1:
-            return "unclear", 0, _one_a_line_question(usual)
-        return "stacked", usual, f"blank lines or frame lines after every {usual} rows"
+        return _by_groups(table, base, usual)
     if lead:
         return "flat", 0, "a time or a number before the values"
     return _by_numbers(table, base, n)
+
+
+def _by_groups(table: Table, base: Layout, usual: int) -> tuple[str, int, str]:
+    """Return what `_decide` returns of lines in groups: rows of matrices, unless lines are frames.
+
+    They are where each has a time or a number of its own and its cells lie together as those of a
+    frame do. One of the two is asked about, unless lines are alike again from group to group.
+    """
+    cells = table.rows[:, base.cells]
+    width = cells.shape[1]
+    if width == 1:
+        return "unclear", 0, _one_a_line_question(usual)
+    why = f"blank lines or frame lines after every {usual} rows"
+    if width < LEAST_FRAMED:
+        return "stacked", usual, why
+    lengths = row_lengths(cells)
+    if table.breaks and lengths:
+        between = "a line of words"
+    elif table.is_parted_by_words or line_period(cells) == usual:
+        return "stacked", usual, why
+    else:
+        between = "a line of words" if table.breaks else "a blank line"
+    timed = _lines_are_timed(table, base)
+    if not lengths and not timed:
+        return "stacked", usual, why
+    if lengths and timed:
+        return "flat", 0, "a time or a number before each line, whose cells lie as a frame's do"
+    framed = (
+        f"frames of {lengths[0][0]} x {lengths[0][1]}, as cells lie together"
+        if lengths
+        else "a frame a line, as a time or a number climbs before each"
+    )
+    question = (
+        f"every {usual} lines of {width} values {between}: matrices (then rows={usual}, "
+        f"columns={width}), or {framed}; give rows and columns"
+    )
+    return "unclear", 0, question
+
+
+def _lines_are_timed(table: Table, base: Layout) -> bool:
+    """Return whether each line has a time or a number of its own."""
+    column = base.roles.get("clock")
+    if column is None:
+        led = [k for role, k in base.roles.items() if role in ("time", "frame")]
+        return any(climbs_in_parts(table.rows[:, k], table.n_parts) for k in led)
+    times = [clock_s(row[column]) for row in table.texts]
+    known = np.array([t for t in times if t is not None])
+    return climbs_in_parts(known, table.n_parts)
 
 
 def _by_row_numbers(base: Layout, table: Table, told: Told) -> Layout | None:
@@ -169,8 +216,7 @@ def _time_unit(base: Layout, table: Table) -> dict[str, Any]:
     times = times_without_unit(table.lines, table.breaks)
     if not times:
         return {}
-    factor, unit = unit_of(np.array(times))
-    note = f"times assumed to be in {unit}"
+    factor, note = assumed_unit(np.array(times))
     return {"time_factor": factor, "assumed": (*base.assumed, note)}
 
 

@@ -5,7 +5,8 @@ A table seldom says what it is. The rules, in order:
 1. settings, then the names in a header, then words before the table, say what the columns are;
 2. a row, a column and a value: one cell a line;
 3. rows and columns told: a line of rows x columns values is a frame, one of columns a row;
-4. groups of equal lines between blank lines (or lines such as ``Frame 3``): stacked matrices;
+4. groups of equal lines between blank lines (or lines such as ``Frame 3``): stacked matrices,
+   unless between blank lines each has a time of its own or cells lie together as a frame's do;
 5. names of cells, a time or a number before the values: a frame a line;
 6. as many lines as columns, or nearly: one matrix;
 7. a square number of values a line: a frame a line;
@@ -24,14 +25,21 @@ import numpy as np
 from tactile_graph.errors import one_of
 from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.doubts import doubt_about
-from tactile_graph_sources.readers.tables.evidence import spacing
-from tactile_graph_sources.readers.tables.layout import Layout, are_days, timed
+from tactile_graph_sources.readers.tables.evidence import counts_up, spacing
+from tactile_graph_sources.readers.tables.layout import Layout, are_days, several_units, timed
 from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
 from tactile_graph_sources.readers.tables.table import Table, table_of
 from tactile_graph_sources.readers.words.counter import runs_over
+from tactile_graph_sources.readers.words.dialect import unquoted
 from tactile_graph_sources.readers.words.names import ColumnsTold, named, units_of
 from tactile_graph_sources.readers.words.told import Told
-from tactile_graph_sources.readers.words.units import NO_UNITS, OHMS, length_unit, value_unit
+from tactile_graph_sources.readers.words.units import (
+    NO_UNITS,
+    OHMS,
+    UNIT_WORDS,
+    length_unit,
+    value_unit,
+)
 
 FEWEST_NAMED = 4
 _CLOCK = "clock"
@@ -77,6 +85,7 @@ def layout_of(
     trouble = (
         doubt_about(lines, table.dialect)
         or _unnamed_value(table, roles)
+        or _strange_time(table, roles)
         or _strange_column(table, roles)
         or _several_units(table)
         or _cells_by_line(table, roles)
@@ -84,20 +93,25 @@ def layout_of(
     )
     if trouble:
         return replace(base, trouble=trouble)
+    base = _in_unit(base, table)
+    if base.trouble:
+        return base
     if table.named.is_long:
-        return _long(base, table)
+        return _long(base, table, told.of_columns)
     base = replace(base, assumed=(*base.assumed, *_strange_unit(table)))
     date = table.dates[0] if table.dates and _CLOCK in roles else None
     base = replace(base, roles=roles, date=date)
     if roles.get("time") is not None:
         base = timed(base, table)
-    base = replace(base, time_format=told.of_columns.time_format)
+    base = replace(base, time_format=told.of_columns.time_format or base.time_format)
     n_told = (told.rows or 0) * (told.columns or 0)
     empty = () if table.width in (n_told, told.columns) else table.empty
     apart = {*roles.values(), *table.labels, *table.dates, *empty}
+    apart |= {base.unit[0]} if base.unit else set()
     cells = table.named.cells or tuple(k for k in range(table.width) if k not in apart)
     read = {*cells, *roles.values(), *(() if date is None else (date,))}
     read |= {base.part[0]} if base.part else set()
+    read |= {base.unit[0]} if base.unit else set()
     base = replace(base, cells=cells, assumed=(*base.assumed, *_left_out(table, read)))
     if not cells:
         return None
@@ -144,6 +158,20 @@ def _unnamed_value(table: Table, roles: dict[str, int]) -> str:
     return (
         f"its header names row and column, and the value could be any of {', '.join(left[:6])}; "
         "give value_column"
+    )
+
+
+def _strange_time(table: Table, roles: dict[str, int]) -> str:
+    """Return what to ask where the column of times holds neither numbers nor known times of day."""
+    k = roles.get("time", table.named.roles.get("time"))
+    if k is None or k not in table.words or k in (*table.clocks, *table.dates):
+        return ""
+    if roles.get(_CLOCK) is not None:
+        return ""
+    name = f"{table.named.names[k]!r}" if table.named.names else f"{k + 1}"
+    return (
+        f"its column {name} says {table.texts[0][k].strip()[:30]!r}, no number and no time that is "
+        "known; say how it is written as strptime takes it, such as time_format='%H:%M:%S'"
     )
 
 
@@ -195,6 +223,28 @@ def _strange_unit(table: Table) -> tuple[str, ...]:
     return (f"values in {unit!r}{falls} taken as they are",)
 
 
+def _in_unit(base: Layout, table: Table) -> Layout:
+    """Return the layout of a table of which a column says the unit of the values."""
+    k = next((k for k, n in enumerate(table.named.names) if n.lower() in UNIT_WORDS), None)
+    if k is None or k not in table.words or k in table.named.cells:
+        return base
+    units = list(dict.fromkeys(filter(None, (unquoted(row[k]) for row in table.texts))))
+    known = {value_unit(unit) for unit in units} - {("raw", 1.0)}
+    if not known and not (len(units) == 1 and units[0].lower() in NO_UNITS):
+        return base  # of a device, or of nobody knows what: it is told as left out
+    if len(units) > 1:
+        return replace(base, trouble=several_units(units))
+    base, said = replace(base, unit=(k, units[0])), base.said
+    if not known:
+        return base
+    quantity, factor = known.pop()
+    others = {(said.quantity, said.factor), (table.named.quantity, table.named.factor)}
+    if others - {("raw", 1.0), (quantity, factor)}:
+        what = f"its column {table.named.names[k]!r} says {units[0]!r}, other words of it another"
+        return replace(base, trouble=f"{what} unit; leave out what is not so")
+    return replace(base, said=replace(said, quantity=quantity, factor=factor))
+
+
 def _cells_by_line(table: Table, roles: dict[str, int]) -> str:
     """Return what to ask where each line is named as a cell, so that its numbers are its times."""
     for k in table.words:
@@ -238,18 +288,21 @@ def _left_out(table: Table, taken: Collection[int]) -> tuple[str, ...]:
 # -- one cell a line ---------------------------------------------------------------------------
 
 
-def _long(base: Layout, table: Table) -> Layout:
+def _long(base: Layout, table: Table, told: ColumnsTold) -> Layout:
     roles = dict(table.named.roles)
-    if table.clocks and roles.get("time", table.clocks[0]) in (*table.clocks, *table.dates):
+    if "time" in roles and told.time_format:
+        roles[_CLOCK] = roles.pop("time")
+    elif table.clocks and roles.get("time", table.clocks[0]) in (*table.clocks, *table.dates):
         roles.pop("time", None)
         roles[_CLOCK] = table.clocks[0]
     base = replace(base, date=table.dates[0] if table.dates and _CLOCK in roles else None)
     names = {role: table.named.names[k] for role, k in table.named.roles.items()}
-    said = table.said
+    said = base.said
     if table.named.quantity != "raw":
         said = replace(said, quantity=table.named.quantity, factor=table.named.factor)
-    base = replace(base, kind="long", roles=roles, said=said)
+    base = replace(base, kind="long", roles=roles, said=said, time_format=told.time_format)
     base = timed(base, table) if "time" in roles else base
+    base = replace(base, assumed=(*base.assumed, *_unread(base, table)))
     factors = {role: length_unit(names[role]) for role in ("row", "column")}
     apart = [spacing(table.rows[:, roles[r]], bool(f)) for r, f in factors.items()]
     if apart[0] is None or apart[1] is None:
@@ -267,11 +320,32 @@ def _long(base: Layout, table: Table) -> Layout:
     )
 
 
+def _unread(base: Layout, table: Table) -> tuple[str, ...]:
+    """Return the note on columns of a long table that nothing is taken from.
+
+    What pandas writes before each line, and empty columns, hold nothing.
+    """
+    read = {*base.roles.values(), *table.named.roles.values()}
+    read |= {found[0] for found in (base.part, base.sensor, base.unit) if found is not None}
+    read |= set() if base.date is None else {base.date}
+    named = table.named.names
+    names = [
+        name or f"column {k + 1}"
+        for k, name in enumerate(named)
+        if k not in read
+        and any(row[k].strip() for row in table.texts)
+        and (name or not counts_up(table.rows[:, k]))
+    ]
+    return (f"columns left out ({', '.join(names[:6])})",) if names else ()
+
+
 def _spaced(base: Layout, table: Table, apart: tuple[float, float]) -> Layout:
     """Return the layout of a long table whose places are so far apart, and the pitch they give."""
-    if apart == (1.0, 1.0):
-        return base
     factors = [length_unit(table.named.names[base.roles[role]]) for role in ("row", "column")]
+    places = table.rows[:, [base.roles["row"], base.roles["column"]]]
+    whole = (np.nanmedian(np.round(places, 6) % 1, axis=0) == 0.0).all()
+    if apart == (1.0, 1.0) and whole and not all(factors):
+        return base
     said = base.said
     if factors[0] and factors[1] and said.pitch_cm is None:
         said = replace(said, pitch_cm=(apart[1] * factors[1], apart[0] * factors[0]))

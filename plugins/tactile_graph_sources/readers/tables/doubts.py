@@ -6,7 +6,8 @@ import re
 from collections.abc import Sequence
 from itertools import zip_longest
 
-from tactile_graph_sources.readers.words.dialect import Dialect, is_row, unquoted
+from tactile_graph_sources.readers.tables.table import is_comment
+from tactile_graph_sources.readers.words.dialect import Dialect, clock_s, is_row, unquoted
 
 _LOOKED_AT = 400
 _FEWEST_PAIRS, _FEWEST_LINES = 3, 2
@@ -42,7 +43,7 @@ def doubt_about(lines: Sequence[str], dialect: Dialect) -> str:
     return (
         next((told for line in first if (told := _of_line(line, dialect))), "")
         or _of_commas(rows := [line for line in first if is_row(line)], dialect)
-        or _of_places(rows[:2], dialect)
+        or _of_places([x for x in first if x.strip() and not is_comment(x)][:2], dialect)
         or _of_thousands(rows, dialect)
     )  # fmt: skip
 
@@ -128,11 +129,13 @@ def _of_thousands(rows: Sequence[str], dialect: Dialect) -> str:
 
 def _of_places(rows: Sequence[str], dialect: Dialect) -> str:
     """Return what to do where two lines in front say row and column of each cell."""
-    if len(rows) < 2 or dialect.separator is None:
+    if len(rows) < 2 or dialect.separator is None or not all(map(is_row, rows)):
         return ""
     names, numbers = zip(*((f[0], f[1:]) for f in map(dialect.fields, rows)), strict=True)
-    if any(_WHOLE.fullmatch(name.strip()) or "." in name for name in names):
+    if any(_WHOLE.fullmatch(n.strip()) or "." in n or clock_s(n) is not None for n in names):
         return ""
+    if names[0].strip() and len(set(names)) == 1:
+        return ""  # what both lines begin with names neither of them
     if not all(text.strip().isdecimal() for line in numbers for text in line):
         return ""
     above, below = ([int(t) for t in line] for line in numbers)

@@ -38,6 +38,22 @@ def rises(column: Numbers) -> bool:
     return bool(from_start) and all(len(part) > SURE_STEPS for part in parts)
 
 
+def climbs_in_parts(column: Numbers, n_parts: int) -> bool:
+    """Return whether lines have times or numbers of their own, which may begin anew in each part.
+
+    Parameters
+    ----------
+    column : ndarray, shape (lines,)
+    n_parts : int
+        Groups of lines; what a whole group has in common climbs from one to the next alone.
+    """
+    if len(column) < 2 or not (np.abs(column) < 1e30).all():
+        return False
+    steps = np.diff(column)
+    n_anew = n_parts - 1
+    return bool((steps < 0.0).sum() <= n_anew and (steps > 0.0).sum() > 2 * n_anew)
+
+
 def counts_up(column: Numbers) -> bool:
     """Return whether a column goes up by one from line to line."""
     sound = len(column) > 1 and bool((np.abs(column) < 1e15).all())

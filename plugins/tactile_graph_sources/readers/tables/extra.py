@@ -6,10 +6,24 @@ from collections import Counter
 from dataclasses import replace
 from math import isqrt
 
-from tactile_graph_sources.readers.tables.evidence import counts_up, is_sum, rises
+import numpy as np
+
+from tactile_graph_sources.readers.tables.evidence import (
+    SURE_STEPS,
+    Numbers,
+    climbs_in_parts,
+    counts_up,
+    is_sum,
+    line_period,
+    rises,
+    row_lengths,
+)
 from tactile_graph_sources.readers.tables.layout import Layout, timed
 from tactile_graph_sources.readers.tables.table import Table
 from tactile_graph_sources.readers.words.told import Told
+
+FEWEST_TIMED = 3
+"""Matrices whose lines all begin with a time that climbs, for it to be one."""
 
 
 def without_extra(base: Layout, table: Table, told: Told) -> Layout:
@@ -29,8 +43,8 @@ def without_extra(base: Layout, table: Table, told: Told) -> Layout:
         return base
     else:
         extra = 0 if _is_square(width) else 1 if _is_square(width - 1) and width > 9 else 0
-    if len(table.groups[0]) > 1 and not table.is_torn:
-        return _row_numbers(base, table)
+    if len(table.groups[0]) > 1 and not table.is_torn and not told_cells:
+        return _before_groups(base, table, extra)
     values = table.rows
     first, last = values[:, cells[0]], values[:, cells[-1]]
     if extra == 0:
@@ -77,13 +91,52 @@ def _doubted(base: Layout, table: Table) -> Layout:
     return replace(base, trouble=question)
 
 
+def _before_groups(base: Layout, table: Table, extra: int) -> Layout:
+    """Return the layout of groups of lines without the columns in front that are no cells.
+
+    They number the rows of each matrix, or are numbers or times of lines or of whole groups.
+    """
+    numbered, cells = _row_numbers(base, table), base.cells
+    if numbered is not base or table.is_parted_by_words:
+        return numbered
+    first, last = table.rows[:, cells[0]], table.rows[:, cells[-1]]
+    size = Counter(table.groups[0]).most_common(1)[0][0]
+    if extra == 1 and climbs_in_parts(first, table.n_parts):
+        # A column of cells may climb in each matrix, but then lines lie together as its rows do.
+        rest = table.rows[:, cells[1:]]
+        if row_lengths(rest) and line_period(rest) != size:
+            return _led(base, table, cells)
+    if _is_of_groups(first, size) and not _is_of_groups(last, size):
+        return _timed_by(replace(base, cells=cells[1:]), table, None, cells[0])
+    if len(cells) < 3 or not _climbs_on(first) or _climbs_on(last):
+        return base
+    if _climbs_on(table.rows[:, cells[1]]):
+        return _timed_by(replace(base, cells=cells[2:]), table, cells[0], cells[1])
+    return _led(base, table, cells)
+
+
+def _is_of_groups(column: Numbers, size: int) -> bool:
+    """Return whether a column says the same of all lines of a group, and climbs between groups."""
+    n = len(column) // size
+    groups = column[: n * size].reshape(n, size)
+    return n >= FEWEST_TIMED and bool(
+        (groups == groups[:, :1]).all() and (np.diff(groups[:, 0]) > 0.0).all()
+    )
+
+
+def _climbs_on(column: Numbers) -> bool:
+    """Return whether a column goes up from line to line, as the cells of no matrices do."""
+    steps = np.diff(column)
+    return len(steps) >= SURE_STEPS and bool((steps > 0.0).all())
+
+
 def _row_numbers(base: Layout, table: Table) -> Layout:
     """Return the layout of stacked matrices without a first column that numbers their rows."""
     size = Counter(table.groups[0]).most_common(1)[0][0]
     first = table.rows[: size * (len(table.rows) // size), base.cells[0]].reshape(-1, size)
     if size < 3 or not len(first) or not all(counts_up(m) for m in first):
         return base
-    if first[0][0] not in (0.0, 1.0):
+    if first[0][0] not in (0.0, 1.0) or (first[:, 0] != first[0][0]).any():
         return base
     note = "columns left out that are no cells (the first, the numbers of rows)"
     return replace(base, cells=base.cells[1:], assumed=(*base.assumed, note))

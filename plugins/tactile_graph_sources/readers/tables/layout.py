@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.tables.evidence import Numbers
 from tactile_graph_sources.readers.tables.table import Table
+from tactile_graph_sources.readers.words.compact import HHMMSS, are_hhmmss, stamps_s
 from tactile_graph_sources.readers.words.dialect import Dialect, unquoted
 from tactile_graph_sources.readers.words.preamble import Described
 
@@ -55,10 +58,12 @@ class Layout:
         Column of the date, where that of clock holds times of day alone.
     time_format : str
         Of the column of clock, where the settings say it.
-    spacing : (float, float)
-        Distance of rows and of columns in the numbers of a long table: 1, or what positions have.
+    spacing : (float, float), optional
+        Distance of rows and of columns where a long table holds positions, not their numbers.
     sensor : (int, str), optional
         The column that says which sensor a line is of, and the one that is read.
+    unit : (int, str), optional
+        The column that says the unit of each line's values, and what it says of all.
     first : (float, float)
         The first row's and the first column's position, where they are positions.
     said : Described
@@ -87,9 +92,10 @@ class Layout:
     part: tuple[int, float] | None = None
     date: int | None = None
     time_format: str = ""
-    spacing: tuple[float, float] = (1.0, 1.0)
+    spacing: tuple[float, float] | None = None
     first: tuple[float, float] = (0.0, 0.0)
     sensor: tuple[int, str] | None = None
+    unit: tuple[int, str] | None = None
     said: Described = field(default_factory=Described)
     why: str = ""
     assumed: tuple[str, ...] = ()
@@ -106,15 +112,44 @@ def of_sensor(layout: Layout, line: str) -> bool:
     return len(fields) <= column or unquoted(fields[column]) == wanted
 
 
+def refuse_other_unit(layout: Layout, where: str, fields: Sequence[str]) -> None:
+    """Refuse a line whose values are in another unit than those of the first lines.
+
+    Raises
+    ------
+    DataError
+        If it says one.
+    """
+    if layout.unit is None or len(fields) <= layout.unit[0]:
+        return
+    said = unquoted(fields[layout.unit[0]])
+    if said and said != layout.unit[1]:
+        raise DataError(where, several_units((layout.unit[1], said)))
+
+
+def several_units(units: Iterable[str]) -> str:
+    """Return what to say of values in several units."""
+    return f"its values are in several units ({', '.join(map(repr, units))}); write them in one"
+
+
 def timed(base: Layout, table: Table) -> Layout:
-    """Return the layout with the factor of its time; where nobody says the unit, it is assumed."""
+    """Return the layout with the factor of its time; where nobody says the unit, it is assumed.
+
+    Dates and times of day that are written as one number make the column one of clock.
+    """
     if table.named.time_factor is not None:
         return replace(base, time_factor=table.named.time_factor, part=table.named.part)
     times = table.rows[:, base.roles["time"]]
-    factor, unit = unit_of(times[np.isfinite(times)])
-    return replace(
-        base, time_factor=factor, assumed=(*base.assumed, f"times assumed to be in {unit}")
-    )
+    times = times[np.isfinite(times)]
+    clock = {"clock" if role == "time" else role: k for role, k in base.roles.items()}
+    if stamps_s(times) is not None:
+        return replace(base, roles=clock)
+    if are_hhmmss(times):
+        note = f"times taken for hours, minutes and seconds ({times[0]:06.0f})"
+        assumed = (*base.assumed, note)
+        return replace(base, roles=clock, time_format=HHMMSS, assumed=assumed)
+    factor, note = assumed_unit(times, table.named.time_unit)
+    return replace(base, time_factor=factor, assumed=(*base.assumed, note))
 
 
 def are_days(times: Numbers) -> bool:
@@ -130,6 +165,21 @@ def are_days(times: Numbers) -> bool:
         and (steps >= 0).all()
         and 0.0 < np.median(steps) < _LONGEST_STEP
     )
+
+
+def assumed_unit(times: Numbers, unknown: str = "") -> tuple[float, str]:
+    """Return the factor of times to seconds, and the note on it.
+
+    Parameters
+    ----------
+    times : ndarray
+        Finite ones, as they come.
+    unknown : str
+        What the file calls their unit, where it is none that is known.
+    """
+    factor, unit = unit_of(times)
+    told = f", as {unknown!r} is no unit of time that is known (give time_unit)" if unknown else ""
+    return factor, f"times assumed to be in {unit}{told}"
 
 
 def unit_of(times: Numbers) -> tuple[float, str]:

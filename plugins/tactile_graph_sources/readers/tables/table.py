@@ -45,6 +45,8 @@ _COMMENT = ("#", "%", "//")
 _FIELD = re.compile(r"[^\s,;|]+")
 _LONGEST_NUMBER = 24
 _LOOKED_AT, _SAMPLED = 4000, 400
+MOST_DAMAGED = 0.1
+"""Share of the first rows that may hold what is no number where others hold one."""
 ENDLESS = 1 << 30
 """As a run of blank lines: none ends a matrix, only its last row does."""
 
@@ -193,6 +195,17 @@ class Table:
                 return groups, run
         return [sum(groups)], ENDLESS
 
+    @property
+    def n_parts(self) -> int:
+        """How many groups the rows are of which numbers are known."""
+        starts = np.cumsum([0, *self.groups[0][:-1]])
+        return int(np.count_nonzero(starts < len(self.rows)))
+
+    @cached_property
+    def is_parted_by_words(self) -> bool:
+        """Whether lines such as ``Frame 3`` or brackets say where a matrix begins."""
+        return any(FRAME_LINE.fullmatch(line) or opens_matrix(line) for line in self.lines)
+
     @cached_property
     def is_torn(self) -> bool:
         """Whether no two groups of rows are of one size, as where words stand here and there."""
@@ -250,7 +263,7 @@ def table_of(
             header, header_line = tuple(full[0][1]), lines[start]
             full, start = others, others[0][0]
     sample = [tuple(f) for _, f in full[:_SAMPLED]]
-    numbers = as_numbers([[_number(t) for t in f] for f in sample])
+    sample, numbers = _sound(sample)
     rest, words = tuple(lines[start:]), [line for line in lines[:start] if not is_blank(line)]
     said = described(words)
     if unit and said.quantity == "raw":
@@ -275,6 +288,22 @@ def table_of(
         whole,
         header_line,
     )
+
+
+def _sound(sample: list[tuple[str, ...]]) -> tuple[list[tuple[str, ...]], Numbers]:
+    """Return rows without the few that are damaged, and their numbers.
+
+    What columns hold is told by the others; who reads the rows tells the damage.
+    """
+    numbers = as_numbers([[_number(t) for t in f] for f in sample])
+    wrong = np.isnan(numbers)
+    for row, k in np.argwhere(wrong):
+        wrong[row, k] = sample[row][k].strip().lower() not in MISSING
+    wrong[:, wrong.mean(axis=0) > MOST_DAMAGED] = False  # words, or times of day
+    damaged = wrong.any(axis=1)
+    if not damaged.any() or damaged.mean() > MOST_DAMAGED:
+        return sample, numbers
+    return [sample[k] for k in np.flatnonzero(~damaged)], numbers[~damaged]
 
 
 def _number(text: str) -> float:

@@ -17,7 +17,7 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables import labview
-from tactile_graph_sources.readers.tables.layout import Layout, of_sensor
+from tactile_graph_sources.readers.tables.layout import Layout, of_sensor, refuse_other_unit
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 from tactile_graph_sources.readers.text.stamps import Stamps
 from tactile_graph_sources.readers.words.dialect import floats, is_row, refuse_underscore
@@ -118,6 +118,7 @@ def _frame(reading: Reading, lines: _Lines, number: int, line: str) -> Frame | N
     layout, shape, pick, stamps, own = lines
     try:
         fields = layout.dialect.texts(line, layout.width)
+        refuse_other_unit(layout, reading.at(number), fields)
         texts = pick(fields)
         if "_" in line:
             refuse_underscore(" ".join(texts))

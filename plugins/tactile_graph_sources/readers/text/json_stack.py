@@ -19,8 +19,9 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
-from tactile_graph_sources.readers.tables.layout import unit_of
+from tactile_graph_sources.readers.tables.layout import assumed_unit
 from tactile_graph_sources.readers.tables.sensors import chosen, labels_of_lines
+from tactile_graph_sources.readers.words.compact import stamps_s
 from tactile_graph_sources.readers.words.dialect import clock_s
 from tactile_graph_sources.readers.words.names import ROLES, named
 from tactile_graph_sources.readers.words.preamble import Described, described
@@ -104,6 +105,7 @@ def frames_of(reading: Reading, entries: Entries) -> Iterator[Frame]:
     reading.told.agree(where, *shape)
     reading.recognised(entries.why)
     reading.report.expect(len(arrays))
+    entries = _without_stamps(entries)
     factor = _time_factor(reading, entries)
     for k, array in enumerate(arrays):
         if array is None or array.shape != usual:
@@ -400,16 +402,27 @@ def _shape(reading: Reading, cells: Cells, said: Described) -> tuple[int, int]:
     return found.shape
 
 
+def _without_stamps(entries: Entries) -> Entries:
+    """Return entries with seconds for times that are dates written as one number."""
+    numbers = [_number(t) if isinstance(t, str) else t for t in entries.times or ()]
+    known = [float(t) for t in numbers if isinstance(t, int | float) and abs(t) < 1e300]
+    found = stamps_s(np.array(known))
+    if found is None:
+        return entries
+    at: dict[Any, float] = dict(zip(known, (found - found[0]).tolist(), strict=True))
+    return entries._replace(times=[at.get(t) for t in numbers], time_name="time_s")
+
+
 def _time_factor(reading: Reading, entries: Entries) -> float:
     if not entries.times:
         return 1.0
-    factor = named((entries.time_name.rpartition(".")[2], "")).time_factor
-    if factor is not None:
-        return factor
+    said = named((entries.time_name.rpartition(".")[2], ""))
+    if said.time_factor is not None:
+        return said.time_factor
     numbers = [_number(t) if isinstance(t, str) else t for t in entries.times]
     times = [t for t in numbers if isinstance(t, int | float) and abs(t) < 1e300]
-    factor, unit = unit_of(np.array(times, dtype=np.float64))
-    reading.assume(f"times assumed to be in {unit}")
+    factor, note = assumed_unit(np.array(times, dtype=np.float64), said.time_unit)
+    reading.assume(note)
     return factor
 
 

@@ -14,7 +14,7 @@ from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import FEWEST_COUNTED, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
-from tactile_graph_sources.readers.tables.layout import Layout, of_sensor
+from tactile_graph_sources.readers.tables.layout import Layout, of_sensor, refuse_other_unit
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 from tactile_graph_sources.readers.text.stamps import Stamps
 from tactile_graph_sources.readers.words.dialect import floats, refuse_underscore
@@ -52,8 +52,10 @@ def read(reading: Reading) -> Iterator[Frame]:
     if not len(cells):
         return
     cells, lines = _without_strays(reading, cells, lines)
-    if layout.spacing != (1.0, 1.0):
+    if layout.spacing is not None:
         cells[:, 2:4] -= cells[:, 2:4].min(axis=0)  # positions count from the first cell
+    else:
+        cells, lines = _from_zero(reading, cells, lines)
     row, column = cells[:, 2].astype(np.intp), cells[:, 3].astype(np.intp)
     first = 0 if min(row.min(), column.min()) == 0 else 1
     rows = reading.told.rows or layout.said.rows or int(row.max()) + 1 - first
@@ -136,11 +138,41 @@ def _without_strays(
     for axis in (2, 3):
         found, n = np.unique(cells[:, axis], return_counts=True)
         usual = found[n > STRAY * np.median(n)]
-        beyond = found[found > FAR * (usual.max() - usual.min() + 1) + usual.max()]
+        far = FAR * (usual.max() - usual.min() + 1)
+        beyond = found[(found > usual.max() + far) | (found < min(usual.min(), 0.0) - far)]
         kept &= ~np.isin(cells[:, axis], beyond)
     for number in lines[~kept]:
         reading.damaged(int(number), "no cell: its row or column is far beyond all others")
     return cells[kept], lines[kept]
+
+
+def _from_zero(
+    reading: Reading, cells: Cells, lines: NDArray[np.intp]
+) -> tuple[Cells, NDArray[np.intp]]:
+    """Return the cells with no row or column below 0, as where the origin lies within the pad.
+
+    Those few below 0 where no other is are damaged, and so is the one place that means none.
+    """
+    signed = {}
+    for axis in (2, 3):
+        found, n = np.unique(cells[:, axis], return_counts=True)
+        lowest = float(found[n > STRAY * np.median(n)].min())
+        below = cells[cells[:, axis] < 0.0, 2:4]
+        if lowest < 0.0 and (below != below[0]).any():
+            signed[axis] = float(found.min())
+    kept = np.ones(len(cells), dtype=bool)
+    for axis in {2, 3} - signed.keys():
+        kept &= cells[:, axis] >= 0.0
+    for number in lines[~kept]:
+        reading.damaged(
+            int(number), "no cell: its row or column is below 0, those of others are not"
+        )
+    cells, lines = cells[kept], lines[kept]
+    if signed:
+        row, column = (signed.get(axis, min(1.0, cells[:, axis].min())) for axis in (2, 3))
+        cells[:, 2:4] -= row, column
+        reading.assume(f"rows counted from {row:g} and columns from {column:g}")
+    return cells, lines
 
 
 def _frame_of_each(
@@ -261,13 +293,13 @@ def _are_places(layout: Layout, cells: Cells) -> bool:
     places = cells[:, 2:4]
     if not (np.isfinite(cells[:, 0]).all() and np.isfinite(places).all()):
         return False
-    if layout.spacing != (1.0, 1.0):
+    if layout.spacing is not None:
         steps = places / layout.spacing
         # The first position need not be a multiple of the spacing: 2.5, 7.5, 12.5.
         offset = np.array(layout.first) / layout.spacing
         places[:] = np.rint(steps - offset)
         return bool((np.abs(steps - offset - places) < 1e-2).all() and (places < _LARGEST).all())
-    return bool(((places >= 0) & (places < _LARGEST) & (places % 1 == 0)).all())
+    return bool(((np.abs(places) < _LARGEST) & (places % 1 == 0)).all())
 
 
 def _at_once(layout: Layout, lines: list[str]) -> Cells | None:
@@ -300,6 +332,7 @@ def _one_by_one(
     for number, line in _content(batch):
         try:
             fields = layout.dialect.texts(line, layout.width)
+            refuse_other_unit(layout, reading.at(number), fields)
             texts = [fields[k] for k in where]
             refuse_underscore(" ".join(texts))
             values = floats(texts)

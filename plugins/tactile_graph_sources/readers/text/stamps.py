@@ -8,6 +8,7 @@ from datetime import datetime
 
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables.layout import Layout
+from tactile_graph_sources.readers.words.compact import HHMMSS
 from tactile_graph_sources.readers.words.dialect import clock_s, floats
 
 _DAY_S = 86400.0
@@ -27,7 +28,7 @@ class Stamps:
         self._first: float | None = None
         self._last = -math.inf
         self._days = 0.0
-        self._start = reading.index
+        self._start = reading.start
         self._last_count = -math.inf
         self._runs = 0
 
@@ -85,6 +86,8 @@ class Stamps:
 
 
 def _by_format(text: str, given: str) -> float | None:
+    # As a number 00:09:05 is written 905.
+    text = text.strip().zfill(6) if given == HHMMSS else text
     try:
         at = datetime.strptime(text.strip().strip('"'), given)
     except ValueError:

@@ -14,15 +14,21 @@ from fnmatch import fnmatch
 from typing import NamedTuple
 
 from tactile_graph.errors import did_you_mean, one_of
-from tactile_graph_sources.readers.words.units import value_unit
+from tactile_graph_sources.readers.words.units import UNIT_WORDS, value_unit
 
-SECONDS = {
-    "s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "sekunden": 1.0,
-    "ms": 1e-3, "msec": 1e-3, "millis": 1e-3, "milliseconds": 1e-3,
-    "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "usec": 1e-6, "micros": 1e-6, "microseconds": 1e-6,
-    "ns": 1e-9, "min": 60.0,
-}  # fmt: skip
+_UNITS_OF_TIME = {
+    1.0: "s sec secs second seconds sekunde sekunden seconde secondes segundos secondi",
+    1e-3: "ms msec msecs millis millisecond milliseconds millisekunden millisecondes",
+    1e-6: "us µs μs usec usecs micros microsecond microseconds mikrosekunden microsecondes",
+    1e-9: "ns nsec nsecs nanos nanosecond nanoseconds nanosekunden nanosecondes",
+    60.0: "min mins minute minutes minuten minutos minuti",
+    3600.0: "h hr hrs hour hours std stunde stunden heures horas ore",
+    86400.0: "d day days tag tage jour jours días dias giorni",
+}
+SECONDS = {unit: seconds for seconds, units in _UNITS_OF_TIME.items() for unit in units.split()}
 """Seconds in the units of time that files spell."""
+_INITIALS = {"h", "d"}
+"""Units of time that stand for heights, depths and days of which a column holds the number."""
 _ROLES = {
     "frame": "frame frame_index frameindex index frame_no frame_number n nr no num sample scan seq "
     "packet bild bildnr image trame cuadro fotograma muestra quadro #",
@@ -109,6 +115,8 @@ class Named:
         Of cells that have one number each.
     time_factor : float, optional
         From the column of time to seconds; None where its name has no unit.
+    time_unit : str
+        What stands in brackets behind its name and is no unit of time that is known.
     quantity, factor : str, float
         What the column of values, or what all cells hold, by the unit in their names.
     part : (int, float), optional
@@ -121,6 +129,7 @@ class Named:
     places: tuple[Place, ...] = ()
     numbers: tuple[int, ...] = ()
     time_factor: float | None = None
+    time_unit: str = ""
     quantity: str = "raw"
     factor: float = 1.0
     part: tuple[int, float] | None = None
@@ -202,10 +211,10 @@ def _chosen(named: Named, width: int, pattern: str) -> tuple[int, ...]:
 
 def named(header: Sequence[str]) -> Named:
     """Return what the names of a header say of the columns."""
-    names = tuple(n.strip().strip("\"'").strip() for n in header)
+    names = tuple(n.strip("\0").strip().strip("\"'").strip() for n in header)
     cells, places, numbers = _cells(names)
     roles: dict[str, int] = {}
-    factor, quantity, scale = None, "raw", 1.0
+    factor, unknown, quantity, scale = None, "", "raw", 1.0
     for k, name in enumerate(names):
         base, unit = _parts(name)
         role = ROLES.get(name.lower()) or ROLES.get(base)
@@ -215,7 +224,9 @@ def named(header: Sequence[str]) -> Named:
             continue  # of many columns called a, b, c, … none is the rows
         roles[role] = k
         if role == "time":
-            factor = SECONDS.get(unit) or SECONDS.get(name.lower())
+            factor = SECONDS.get(unit.rstrip(".")) or SECONDS.get(name.lower())
+            found = _BRACKETED.search(name)
+            unknown = found[1] if found is not None and factor is None else ""
         elif role == "value":
             quantity, scale = value_unit(unit or base)
     part = _in_parts(names)
@@ -223,7 +234,8 @@ def named(header: Sequence[str]) -> Named:
         roles["time"], factor = part[0], 1.0
     for k, name in enumerate(names[:2]):
         unit = found[1].lower() if (found := _BRACKETED.search(name)) else ""
-        if "time" not in roles and k not in cells and unit in SECONDS:  # X(s) of an oscilloscope
+        if "time" not in roles and k not in cells and unit in SECONDS.keys() - _INITIALS:
+            # X(s) of an oscilloscope
             roles["time"], factor = k, SECONDS[unit]
     if names and not names[0] and "frame" not in roles and cells[:1] != (0,):
         roles["frame"] = 0  # as pandas writes an index
@@ -233,15 +245,17 @@ def named(header: Sequence[str]) -> Named:
             roles["value"] = worded[0]
             quantity, scale = value_unit(_parts(names[worded[0]])[1])
     if {"row", "column"} <= roles.keys() and "value" not in roles:
-        left = [k for k in range(len(names)) if k not in roles.values() and names[k]]
+        left = [k for k, n in enumerate(names) if k not in roles.values() and n]
+        left = [k for k in left if names[k].lower() not in UNIT_WORDS]
         if len(left) == 1:
             roles["value"] = left[0]
             quantity, scale = value_unit(_parts(names[left[0]])[1] or names[left[0]])
     if cells:
         quantity, scale = _unit_of_cells([names[k] for k in cells])
     return Named(
-        names, roles, cells, places, numbers, factor, quantity, scale, part[1:] if part else None
-    )
+        names, roles, cells, places, numbers, factor, unknown, quantity, scale,
+        part[1:] if part else None,
+    )  # fmt: skip
 
 
 def _in_parts(names: Sequence[str]) -> tuple[int, int, float] | None:

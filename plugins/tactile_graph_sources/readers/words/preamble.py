@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from tactile_graph_sources.readers.words.units import (
+    UNIT_WORDS,
     length_cm,
     value_unit,
     without_length_unit,
@@ -23,8 +24,7 @@ _WORDS = {
     "pitch": {"pitch", "spacing", "cell size", "sensel size", "sensel width",
               "cell width", "raster", "rastermaß", "pas", "paso", "passo",
               "element pitch", "cell pitch", "sensor pitch"},
-    "unit": {"unit", "units", "einheit", "unité", "unite", "unidad", "unidades", "unità",
-             "unita", "pressure unit"},
+    "unit": UNIT_WORDS,
     "rate": {"rate", "frame rate", "sampling rate", "sample rate", "frequency", "fps", "fs",
              "sampling frequency", "scanning rate", "sample rate hz", "rate hz", "abtastrate",
              "frequenz", "fréquence", "frecuencia", "frequenza", "cadence"},

@@ -13,9 +13,19 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.words.names import NOTHING_TOLD, ColumnsTold
 
-_ASKED = re.compile(r"\b(?:give|name|say|settings?)\b(.*)", re.DOTALL)
-_LIKELY = re.compile(r"(\d+) x (\d+)(?: cells)?(?=, as they lie\))|could be (\d+) x (\d+)")
-_SETTINGS = ("rows", "columns", "sensor", "frame_column", "time_column", "value_column", "cells")
+_LIKELY = re.compile(
+    r"(\d+) x (\d+)(?: cells)?(?=, as (?:they lie\)|cells lie together))|could be (\d+) x (\d+)"
+)
+_SETTINGS = (
+    "rows", "columns", "sensor", "frame_column", "time_column", "value_column", "cells",
+    "time_format",
+)  # fmt: skip
+_SETTING = rf"(?:{'|'.join(_SETTINGS)})\b(?!=)"
+_ASKED = re.compile(
+    rf"\b(?:give(?: the settings)?|name one with)\s+({_SETTING}(?:(?:,| and)\s+{_SETTING})*)"
+)
+_SUCH_AS = re.compile(rf"such as ({'|'.join(_SETTINGS)})=(?:'([^']*)'|([^\s,;()]+))")
+"""Where a refusal names settings, which are common words too: "say which columns are cells"."""
 MOST_CELLS = 4_000_000  # a damaged header must not ask for all memory there is
 
 
@@ -110,13 +120,11 @@ def as_typed(what: str, sensors: Sequence[str] = ()) -> str:
 
     What the shape may be by its words, and the first of ``sensors``, is put in.
     """
-    asked = _ASKED.search(what)
-    if asked is None:
-        return ""
-    words = re.findall(r"[a-z_]+", asked[1])
+    such_as = {m[1]: m[2] or m[3] for m in _SUCH_AS.finditer(what)}
+    asked = {word for m in _ASKED.finditer(what) for word in re.findall(_SETTING, m[1])}
     likely = _LIKELY.search(what)
     rows, columns = [g for g in likely.groups() if g] if likely else ("…", "…")
-    values = {"rows": rows, "columns": columns, "cells": "2-65", "sensor": [*sensors, "…"][0]}
-    pairs = [f"{s}={values.get(s, '…')}" for s in _SETTINGS if s in words]
+    values = {"rows": rows, "columns": columns, "sensor": [*sensors, "…"][0], **such_as}
+    pairs = [f"{s}={values.get(s, '…')}" for s in _SETTINGS if s in asked or s in such_as]
     typed = [f"--with {shlex.quote(p) if '…' not in p else p}" for p in pairs]
     return f" (as typed: {' '.join(typed)})" if typed else ""

@@ -26,6 +26,11 @@ _VALUES = {
     "lsb": ("counts", 1.0), "siemens": ("siemens", 1.0),
     "vdc": ("volt", 1.0), "mvdc": ("volt", 1e-3),
 }  # fmt: skip
+UNIT_WORDS = frozenset({
+    "unit", "units", "einheit", "unité", "unite", "unidad", "unidades", "unità", "unita",
+    "pressure unit", "pressure_unit",
+})  # fmt: skip
+"""What a line or a column is called that says a unit."""
 NO_UNITS = frozenset({"raw", "a.u.", "au", "-", "1", "arb. units"})
 OHMS = re.compile(r"[km]?(?:ohms?|ω)")
 _CENTIMETRES = {"mm": 0.1, "cm": 1.0, "m": 100.0, "in": 2.54, "inch": 2.54, "inches": 2.54}

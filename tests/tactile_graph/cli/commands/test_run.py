@@ -480,6 +480,10 @@ def test_troubles_are_told_at_once_while_no_frame_comes(monkeypatch, tmp_path):
     assert call("run", "loads", "a.txt", "-o", "o.csv").stderr.count("a.txt:2: not a number") == 1
     monkeypatch.setattr("tactile_graph.cli.commands.run.STALLED_S", -1.0)
     assert call("run", "loads", "a.txt", "-o", "o.csv").stderr.count("a.txt:2: not a number") == 2
+    (tmp_path / "a.txt").write_text("1\n" + "bad\n" * 12 + "2\n")
+    said = call("run", "loads", "a.txt", "-o", "o.csv").stderr
+    assert said.count("not a number") == 2 * 5  # at once, and at the end
+    assert said.count("… and 7 more") == 1
 
 
 # -- decisions of a live run ---------------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import struct
 import zlib
 from pathlib import Path
 from typing import Any
@@ -13,11 +14,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.io import loadmat
+from scipy.sparse import csc_matrix
 
 from helpers_dialects import cell_array, matlab
-from helpers_recordings import write
+from helpers_recordings import frames_of, write
+from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.arrays import mat5
-from tactile_graph_sources.readers.arrays.mat5 import DamagedError, variables
+from tactile_graph_sources.readers.arrays.mat5 import DamagedError, Unread, variables
 
 DTYPES = ("f8", "f4", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "?")
 
@@ -58,7 +61,45 @@ def test_structs_cells_and_texts_are_those_scipy_reads(packed: bool, tmp_path: P
     assert found["s"]["n"] == 4
     for mine, its in zip(found["s"]["inner"]["list"], truth["s"]["inner"]["list"], strict=True):
         np.testing.assert_array_equal(mine, its)
-    assert found["z"] is None
+    assert found["z"] == Unread("complex", (1, 1))
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        (np.ones((5, 7)) * 1j, r"'x' of shape \(5, 7\) is complex, .* x = abs\(x\); save\('out"),
+        (csc_matrix(np.eye(5)), r"'x' of shape \(5, 5\) is sparse, .* x = full\(x\); save\('out"),
+    ],
+)
+@pytest.mark.parametrize("packed", [False, True])
+def test_matrices_of_a_kind_that_is_not_read_are_named(
+    value: Any, told: str, packed: bool, tmp_path: Path
+) -> None:
+    path = write(tmp_path, matlab(packed, x=value, t=np.arange(5.0)))
+    with pytest.raises(DataError, match=told):
+        frames_of(path)
+    path = write(tmp_path, matlab(packed, x=value, real=np.ones((4, 6, 6))))
+    assert len(frames_of(path)[0]) == 4
+    with pytest.raises(DataError, match=told):
+        frames_of(path, sensor="x")
+
+
+def test_an_object_is_named_and_hides_nothing_else(tmp_path: Path) -> None:
+    """MATLAB's strings, tables and dates have a name and no size."""
+    body = b"".join(
+        struct.pack("<II", kind, len(data)) + data.ljust(-(-len(data) // 8) * 8, b"\0")
+        for kind, data in (
+            (6, struct.pack("<II", 17, 0)),
+            (1, b"when"),
+            (1, b"MCOS"),
+            (1, b"datetime"),
+        )
+    )
+    element = struct.pack("<II", 14, len(body)) + body
+    alone, beside = matlab()[:128] + element, matlab(real=np.ones((4, 6, 6))) + element
+    with pytest.raises(DataError, match="its variable 'when' is an object, no matrix of real numb"):
+        frames_of(write(tmp_path, alone))
+    assert len(frames_of(write(tmp_path, beside))[0]) == 4
 
 
 def test_the_other_byte_order_is_read(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -149,7 +150,7 @@ def test_long_cells_left_out_are_invalid_and_repeated_ones_dropped(tmp_path: Pat
     [
         ("0,1,x,5", "no cell: 'x' is no number"),
         ("0,1,2", "no cell: 3 values, not 4"),
-        ("0,-1,2,5", "no cell: '0,-1,2,5' names no place on a pad"),
+        ("0,-1,2,5", "no cell: its row or column is below 0, those of others are not"),
         ("0,0.5,2,5", "names no place on a pad"),
         ("nan,0,2,5", "names no place on a pad"),
         ("0,1_0,2,5", "'_' is no part of a number"),
@@ -163,6 +164,44 @@ def test_a_damaged_line_of_a_long_table_is_named(line: str, what: str, tmp_path:
     np.testing.assert_array_equal([f.image.values for f in frames], WIDE)
     assert report.troubles[0][0] == f"{path}:8"
     assert what in report.troubles[0][1]
+
+
+@pytest.mark.parametrize("last", [0, 1, 400])
+@pytest.mark.parametrize(("up", "left"), [(2, 5), (0, 5), (-1, 5), (2, 0)])
+def test_cells_count_from_the_lowest_where_the_origin_lies_within_the_pad(
+    up: int, left: int, last: int, tmp_path: Path
+) -> None:
+    """``last``: how many of the lines there are before the first one below 0."""
+    cells = [f"{k},{c - left},{r - up},{v}" for (k, r, c), v in np.ndenumerate(moving(9, 6, 10))]
+    first = [x for x in cells if "-" not in x][:last]
+    rest = [x for x in cells if x not in first]
+    path = write(tmp_path, "\n".join(["frame,x,y,value", *first, *rest]))
+    frames, report = frames_of(path)
+    assert not report.troubles
+    by_number = sorted(frames, key=lambda f: f.image.values.tobytes())
+    expected = sorted(moving(9, 6, 10), key=lambda v: v.tobytes())
+    np.testing.assert_array_equal([f.image.values for f in by_number], expected)
+    assert report.counts[f"recordings with rows counted from {-up} and columns from {-left}"] == 1
+
+
+def test_positions_between_whole_numbers_are_read_wherever_their_origin_lies(
+    tmp_path: Path,
+) -> None:
+    values = moving(4, 6, 10)
+    cells = [f"{k},{c - 4.5},{r - 2.5},{v}" for (k, r, c), v in np.ndenumerate(values)]
+    check(write(tmp_path, "\n".join(["frame,x,y,value", *cells])), values)
+    cells = [f"{k},{c - 5},{r - 3},{v}" for (k, r, c), v in np.ndenumerate(values)]
+    path = write(tmp_path, "\n".join(["frame,x_mm,y_mm,value", *cells]))
+    check(path, values)
+    assert frames_of(path)[0][0].image.pitch_cm == pytest.approx((0.1, 0.1))
+
+
+def test_a_place_that_means_none_is_no_place(tmp_path: Path) -> None:
+    lines = long_text(WIDE).splitlines()
+    lines += [f"{k},-1,-1,0" for k in range(4)]
+    frames, report = frames_of(write(tmp_path, "\n".join(lines)))
+    np.testing.assert_array_equal([f.image.values for f in frames], WIDE)
+    assert len(report.troubles) == 4
 
 
 def test_long_cells_outside_the_told_shape_are_reported(tmp_path: Path) -> None:
@@ -261,3 +300,174 @@ def test_a_square_number_of_values_is_a_square_frame_unless_the_cells_lie_otherw
 def test_a_lying_shape_is_refused(tmp_path: Path) -> None:
     with pytest.raises(DataError, match="6 rows and 10 columns, the settings say rows=7"):
         frames_of(write(tmp_path, stacked_text(WIDE)), rows=7)
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+@pytest.mark.parametrize(
+    "stamp",
+    [
+        "2024-01-01T10:00:{:02d}",
+        "2024-01-01 10:00:{:02d}",
+        "10:00:{:02d}",
+        "01.02.2024 10:00:{:02d}Z",
+    ],
+)
+def test_long_tables_begin_with_a_date_or_time_of_day(
+    stamp: str, separator: str, tmp_path: Path
+) -> None:
+    values = np.round(WIDE)
+    lines = [(stamp.format(k), r, c, f"{v:.0f}") for (k, r, c), v in np.ndenumerate(values)]
+    text = "\n".join(separator.join(map(str, x)) for x in [("time", "row", "col", "value"), *lines])
+    frames, report = frames_of(write(tmp_path, text))
+    assert not report.troubles
+    np.testing.assert_array_equal([f.image.values for f in frames], values)
+    assert [f.time_s for f in frames] == [0.0, 1.0, 2.0, 3.0]
+
+
+def test_what_all_lines_begin_with_is_no_name_of_rows_and_columns(tmp_path: Path) -> None:
+    lines = [f"left,{r},{c},{v:.0f}" for (r, c), v in np.ndenumerate(WIDE[0])]
+    check(write(tmp_path, "\n".join(["foot,row,col,value", *lines])), np.round(WIDE[:1]))
+
+
+# -- what stands beside the cells --------------------------------------------------------------
+
+
+def beside(names: str, *texts: str) -> str:
+    """Return a long table with columns beside its cells, whose texts are the same in all lines."""
+    lines = [",".join([f"{k},{r},{c},{v:.0f}", *texts]) for (k, r, c), v in np.ndenumerate(WIDE)]
+    return "\n".join([f"frame,row,col,pressure,{names}", *lines])
+
+
+@pytest.mark.parametrize(
+    ("unit", "quantity", "factor"),
+    [("mmHg", "kilopascal", 0.133322387415), ("N/cm2", "kilopascal", 10.0), ("mV", "volt", 1e-3)],
+)
+def test_a_column_says_the_unit_of_long_and_of_wide_tables(
+    unit: str, quantity: str, factor: float, tmp_path: Path
+) -> None:
+    long = write(tmp_path, beside("unit", unit), "long.csv")
+    header = ",".join(["Einheit", *(f"r{r}c{c}" for r in range(6) for c in range(10))])
+    rows = flat_text(np.round(WIDE)).splitlines()
+    wide = write(tmp_path, "\n".join([header, *(f"{unit},{x}" for x in rows)]), "wide.csv")
+    for path in (long, wide):
+        frames, report = frames_of(path)
+        assert {f.image.quantity for f in frames} == {quantity}
+        np.testing.assert_allclose(
+            [f.image.values for f in frames], np.round(WIDE) * factor, rtol=1e-12
+        )
+        assert not any("left out" in what for what in report.counts)
+
+
+@pytest.mark.parametrize("after", [3, 900])
+def test_values_in_several_units_are_refused_however_late_the_second_comes(
+    after: int, tmp_path: Path
+) -> None:
+    lines = [f"{k // 60},{k % 60 // 10},{k % 10},{k % 7},mmHg" for k in range(960)]
+    lines[after:] = [line.replace("mmHg", "kPa") for line in lines[after:]]
+    path = write(tmp_path, "\n".join(["frame,row,col,pressure,unit", *lines]))
+    with pytest.raises(DataError, match=r"its values are in several units \('mmHg', 'kPa'\)") as e:
+        frames_of(path)
+    assert e.value.where == (str(path) if after < 400 else f"{path}:902")
+
+
+def test_a_unit_that_other_words_contradict_is_refused(tmp_path: Path) -> None:
+    path = write(tmp_path, "unit: kPa\n" + beside("unit", "mmHg"))
+    with pytest.raises(DataError, match="its column 'unit' says 'mmHg', other words of it another"):
+        frames_of(path)
+
+
+@pytest.mark.parametrize(
+    ("names", "texts", "told"),
+    [
+        ("pressure_kPa", ["7"], "pressure_kPa"),
+        ("unit,note", ["left", "calm"], "unit, note"),
+        (",", ["", ""], ""),
+    ],
+)
+def test_columns_of_a_long_table_that_are_not_read_are_told(
+    names: str, texts: list[str], told: str, tmp_path: Path
+) -> None:
+    frames, report = frames_of(write(tmp_path, beside(names, *texts)))
+    np.testing.assert_array_equal([f.image.values for f in frames], np.round(WIDE))
+    found = [what for what in report.counts if "left out" in what]
+    assert found == ([f"recordings with columns left out ({told})"] if told else [])
+
+
+# -- blank lines between frames of a line each -------------------------------------------------
+
+
+def parted(lines: list[str], size: int) -> str:
+    """Return lines with a blank one after every ``size`` of them."""
+    return "".join(f"{line}\n" + "\n" * (k % size == size - 1) for k, line in enumerate(lines))
+
+
+@pytest.mark.parametrize(
+    ("stamp", "last_s"),
+    [
+        (lambda k: f"2024-01-01T10:00:{k:02d}", 29.0),
+        (lambda k: f"10:00:{k:02d}", 29.0),
+        (lambda k: f"{20 * k}", 0.58),
+        (lambda k: f"{20 * (k % 15)}", 0.28),
+        (lambda k: f"{k},{20 * k + 3}", 0.583),
+        (lambda k: f"{k}", None),
+    ],
+    ids=["dates", "times of day", "milliseconds", "begun anew", "numbers and times", "numbers"],
+)
+@pytest.mark.parametrize("side", [8, 12])
+def test_lines_with_a_time_of_their_own_are_frames_whatever_blank_lines_part_them(
+    stamp: Callable[[int], str], last_s: float | None, side: int, tmp_path: Path
+) -> None:
+    values = moving(30, side, side)
+    lines = [f"{stamp(k)},{x}" for k, x in enumerate(flat_text(values).splitlines())]
+    frames, _ = frames_of(write(tmp_path, parted(lines, 15)))
+    np.testing.assert_array_equal([f.image.values for f in frames], values)
+    assert frames[-1].time_s == pytest.approx(last_s)
+
+
+def test_blank_lines_between_lines_that_may_be_frames_are_asked_about(tmp_path: Path) -> None:
+    values = moving(30, 8, 8)
+    path = write(tmp_path, parted(flat_text(values).splitlines(), 10))
+    with pytest.raises(
+        DataError,
+        match=r"matrices \(then rows=10, columns=64\), or frames of 8 x 8, .* rows=8 --with colu",
+    ):
+        frames_of(path)
+    check(path, values, rows=8, columns=8)
+    check(path, values.reshape(3, 10, 64), rows=10, columns=64)
+
+
+@pytest.mark.parametrize(
+    "stamp",
+    [lambda k: f"{10 * k},", lambda k: f"10:00:{0.01 * k:06.3f} -> "],
+    ids=["milliseconds", "of a serial monitor"],
+)
+def test_rows_of_matrices_stay_rows_where_each_has_a_time(
+    stamp: Callable[[int], str], tmp_path: Path
+) -> None:
+    values = moving(30, 16, 16)
+    lines = flat_text(values.reshape(-1, 1, 16)).splitlines()
+    path = write(tmp_path, parted([f"{stamp(k)}{x}" for k, x in enumerate(lines)], 16))
+    check(path, values)
+
+
+def test_a_column_that_climbs_in_each_matrix_is_one_of_cells(tmp_path: Path) -> None:
+    values = moving(20, 12, 17) + 10.0 * np.arange(12)[:, None]
+    values[:, :, 0] = 100.0 + 10.0 * np.arange(12)
+    lines = flat_text(values.reshape(-1, 1, 17)).splitlines()
+    check(write(tmp_path, parted(lines, 12)), values)
+
+
+def test_a_time_that_the_rows_of_a_matrix_share_is_no_cell(tmp_path: Path) -> None:
+    values = moving(6, 5, 7)
+    lines = flat_text(values.reshape(-1, 1, 7)).splitlines()
+    path = write(tmp_path, parted([f"{20 * (k // 5)},{x}" for k, x in enumerate(lines)], 5))
+    check(path, values)
+    assert [f.time_s for f in frames_of(path)[0]] == pytest.approx([0.02 * k for k in range(6)])
+
+
+def moving(n: int, rows: int, columns: int) -> np.ndarray:
+    """Return whole readings of a load that moves slowly over noise, shape (n, rows, columns)."""
+    y, x = np.mgrid[:rows, :columns]
+    noise = np.random.default_rng(0).normal(20, 1, (n, rows, columns))
+    apart = [(y - rows / 4 - 0.2 * k) ** 2 + (x - columns / 1.6 + 0.3 * k) ** 2 for k in range(n)]
+    return np.round(noise + 800 * np.exp(-np.array(apart) / 9))

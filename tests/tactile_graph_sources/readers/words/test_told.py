@@ -27,6 +27,18 @@ from tactile_graph_sources.readers.words.told import as_typed
         ),
         ("columns are cells, such as cells=2-65; say which cells", "--with cells=2-65"),
         ("could be any of p, q; give value_column", "--with value_column=…"),
+        ("'x' is no number; say which columns are cells, such as cells=2-65", "--with cells=2-65"),
+        ("nothing says which; give cells, such as cells='2-' for all", "--with cells=2-"),
+        ("or of one grid (then give rows=2, columns=64); name one with sensor", "--with sensor=…"),
+        (
+            "it holds 3; give cells, rows and columns",
+            "--with rows=… --with columns=… --with cells=…",
+        ),
+        (
+            "the settings say rows=7, columns=9 of its shape; give rows and columns whose product "
+            "is that number, or say which columns are cells, such as cells=2-65",
+            "--with rows=… --with columns=… --with cells=2-65",
+        ),
     ],
 )
 def test_what_is_asked_for_is_put_behind_with(what: str, typed: str) -> None:
@@ -36,6 +48,7 @@ def test_what_is_asked_for_is_put_behind_with(what: str, typed: str) -> None:
 def test_where_no_setting_helps_nothing_is_said() -> None:
     assert not as_typed("the file is cut off: it holds less than its header says")
     assert not as_typed("its rows and columns are damaged")
+    assert not as_typed("say row and column of each cell; name the cells on one line")
 
 
 def test_a_sensor_is_named_as_a_shell_takes_it() -> None:

@@ -1,0 +1,74 @@
+"""Along which axis of an array the frames lie: asked, told as assumed, or known."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from helpers_recordings import frames_of, npy_bytes, npz_bytes, write
+from tactile_graph.errors import DataError
+from tactile_graph.wires import Frame
+from tactile_graph_sources.writers.write_npz import write_npz
+
+
+def moving(n: int, rows: int, columns: int) -> np.ndarray:
+    """Return a load that moves slowly over the pad, shape (n, rows, columns)."""
+    y, x = np.mgrid[:rows, :columns]
+    apart = [(y - rows / 4 - 0.2 * k) ** 2 + (x - columns / 1.6 + 0.3 * k) ** 2 for k in range(n)]
+    return np.round(20 + (3 * x + 5 * y) % 4 + 800 * np.exp(-np.array(apart) / 9))
+
+
+@pytest.mark.parametrize("shape", [(12, 9, 11), (10, 28, 56), (30, 16, 20)])
+def test_frames_along_the_last_axis_are_asked_about_where_neighbours_say_so(
+    shape: tuple[int, int, int], tmp_path: Path
+) -> None:
+    values = moving(*shape)
+    path = write(tmp_path, npy_bytes(np.moveaxis(values, 0, -1)))
+    n, rows, columns = shape
+    with pytest.raises(DataError, match=f"{n} frames of {rows} x {columns} along the last axis"):
+        frames_of(path)
+    frames, _ = frames_of(path, rows=rows, columns=columns)
+    np.testing.assert_array_equal([f.image.values for f in frames], values)
+    frames, report = frames_of(write(tmp_path, npy_bytes(values)))
+    np.testing.assert_array_equal([f.image.values for f in frames], values)
+    assert not any("axis" in what for what in report.counts)
+
+
+@pytest.mark.parametrize("shape", [(12, 9, 14), (5, 7, 2)])
+def test_the_axis_of_frames_is_told_where_nothing_says_it(
+    shape: tuple[int, int, int], tmp_path: Path
+) -> None:
+    noise = np.random.default_rng(0).normal(20, 1, shape)
+    n, rows, columns = shape
+    told = f"recordings with frames assumed to lie along the first axis, {n} of {rows} x {columns}"
+    for content in (npy_bytes(noise), npz_bytes(frames=noise), npz_bytes(values=noise)):
+        frames, report = frames_of(write(tmp_path, content))
+        assert len(frames) == n
+        assert report.counts[told] == 1
+    _, report = frames_of(write(tmp_path, npy_bytes(noise)), rows=rows, columns=columns)
+    assert told not in report.counts
+
+
+def test_times_say_along_which_axis_frames_lie(tmp_path: Path) -> None:
+    noise = np.random.default_rng(0).normal(20, 1, (12, 9, 14))
+    times = 0.02 * np.arange(12)
+    told = "recordings with frames taken to lie along the last axis, as there are 12 times"
+    for array, n_told in ((noise, 0), (np.moveaxis(noise, 0, -1), 1)):
+        frames, report = frames_of(write(tmp_path, npz_bytes(frames=array, time_s=times)))
+        np.testing.assert_array_equal([f.image.values for f in frames], noise)
+        assert [f.time_s for f in frames] == pytest.approx(times.tolist())
+        assert report.counts[told] == n_told
+        assert not any("assumed to lie" in what for what in report.counts)
+
+
+@pytest.mark.parametrize("shape", [(5, 5, 7), (6, 6, 3), (2, 2, 30)])
+def test_frames_that_the_project_wrote_lie_along_the_first_axis_whatever_their_shape(
+    shape: tuple[int, int, int], tmp_path: Path
+) -> None:
+    values = moving(*shape)
+    write_npz(tmp_path / "a.npz", [Frame.of(v, index=k) for k, v in enumerate(values)])
+    frames, report = frames_of(tmp_path / "a.npz")
+    np.testing.assert_array_equal([f.image.values for f in frames], values)
+    assert not any("axis" in what for what in report.counts)
