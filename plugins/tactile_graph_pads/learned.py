@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +14,7 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
-from tactile_graph.errors import DataError, one_of
+from tactile_graph.errors import DataError, one_of, shown
 from tactile_graph.files import write_whole
 
 Array = NDArray[np.float64]
@@ -182,42 +183,67 @@ def read_elements(path: Path, shape: tuple[int, int]) -> Elements:
     """
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
-            lines = list(csv.DictReader(file))
+            text = file.read()
+        apart = next((mark for mark in ";\t" if mark in text.partition("\n")[0]), ",")
+        lines = list(csv.DictReader(io.StringIO(text), delimiter=apart))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise DataError(str(path), f"the table of elements cannot be read: {error}") from error
     if lines and (missing := set(COLUMNS) - set(lines[0])):
+        lacking = [name for name in COLUMNS if name in missing]
         raise DataError(
-            f"{path}:1", f"needs the columns {one_of(COLUMNS)}; lacks {sorted(missing)}"
+            f"{path}:1",
+            f"needs the columns {','.join(COLUMNS)}; lacks {one_of(lacking)}, "
+            f"got {shown(text.partition(chr(10))[0].strip())}",
         )
     numbers = np.full((3, *shape), np.nan)
-    state = np.full(shape, "", dtype="U8")
+    state, given = np.full(shape, "", dtype="U8"), np.zeros(shape, int)
     for n, line in enumerate(lines, 2):
-        row, column, *values = _entry(line, f"{path}:{n}", shape)
-        numbers[:, row, column] = values
+        row, column, *values = _entry(line, f"{path}:{n}", shape, "," if apart != "," else ".")
+        if first := int(given[row, column]):
+            raise DataError(
+                f"{path}:{n}",
+                f"row {row}, column {column} is given twice; the first is in line {first}",
+            )
+        numbers[:, row, column], given[row, column] = values, n
         state[row, column] = line["state"]
-    if np.isnan(numbers).any():
-        row, column = np.argwhere(np.isnan(numbers).any(axis=0))[0].tolist()
+    if not given.all():
+        row, column = np.argwhere(given == 0)[0].tolist()
         raise DataError(str(path), f"lacks the element in row {row}, column {column}")
     offset, noise, gain = numbers
     return Elements(offset, noise, gain, state)
 
 
 def _entry(
-    line: dict[str, str], where: str, shape: tuple[int, int]
+    line: dict[str, str], where: str, shape: tuple[int, int], point: str
 ) -> tuple[int, int, float, float, float]:
-    try:
-        row, column = int(line["row"]), int(line["column"])
-        offset, noise, gain = (float(line[name]) for name in COLUMNS[2:5])
-    except (TypeError, ValueError) as error:
-        raise DataError(where, f"is no element: {error}") from error
+    """Return an element's place, offset, noise and gain; ``point`` stands before decimals."""
+    place = [_number(line, name, where, int) for name in COLUMNS[:2]]
+    numbers = [_number(line, name, where, float, point) for name in COLUMNS[2:5]]
+    row, column = int(place[0]), int(place[1])
     if not (0 <= row < shape[0] and 0 <= column < shape[1]):
         raise DataError(
             where, f"row {row}, column {column} is not on a pad of {shape[0]} x {shape[1]}"
         )
-    if not (np.isfinite([offset, noise, gain]).all() and noise >= 0.0 and gain > 0.0):
-        raise DataError(
-            where, f"noise must be 0 or more and gain above 0, got {noise:g} and {gain:g}"
-        )
+    offset, noise, gain = numbers
+    for wrong, rule in (
+        (not math.isfinite(offset), f"offset must be finite, got {offset:g}"),
+        (not 0.0 <= noise < math.inf, f"noise must be finite and >= 0, got {noise:g}"),
+        (not 0.0 < gain < math.inf, f"gain must be finite and > 0, got {gain:g}"),
+    ):
+        if wrong:
+            raise DataError(where, rule)
     if line["state"] not in STATES:
         raise DataError(where, f"state must be one of {one_of(STATES)}, got {line['state']!r}")
     return row, column, offset, noise, gain
+
+
+def _number(
+    line: dict[str, str], name: str, where: str, kind: type[float], point: str = "."
+) -> float:
+    text = line[name]
+    try:
+        return kind(text.replace(point, "."))
+    except (AttributeError, ValueError):
+        what = "a whole number" if kind is int else "a number"
+        got = "nothing: the line ends before it" if text is None else shown(text)
+        raise DataError(where, f"{name} must be {what}, got {got}") from None

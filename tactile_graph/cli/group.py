@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
@@ -12,7 +13,7 @@ import click
 
 from tactile_graph.cli import endings, shared
 from tactile_graph.cli.say import say
-from tactile_graph.errors import PluginError, did_you_mean, one_of
+from tactile_graph.errors import PluginError, TactileGraphError, did_you_mean, one_of
 from tactile_graph.plugins import registry
 
 
@@ -135,8 +136,14 @@ class Group(click.Group):
         """Run a command line; unless told otherwise, show what went wrong and exit."""
         given = list(sys.argv[1:] if args is None else args)
         inner: Callable[..., Any] = super().main
+        completing = (complete_var or "_TACTILE_GRAPH_COMPLETE") in os.environ
 
         def run() -> Any:
-            return inner(given, prog_name or "tactile-graph", complete_var, False, **extra)
+            try:
+                return inner(given, prog_name or "tactile-graph", complete_var, False, **extra)
+            except (click.ClickException, TactileGraphError):
+                if not completing:
+                    raise
+                return None  # a shell asks in the middle of a line: it would stand in it
 
         return sys.exit(endings.ending(run, "--debug" in given)) if standalone_mode else run()

@@ -69,9 +69,14 @@ def test_mistakes_in_the_section_are_told_with_their_line(tmp_path: Path) -> Non
         (("1,2,5,1.5,1,dead\n", ""), "lacks the element in row 1, column 2"),
         (("dead", "broken"), r":7: state must be one of .*got 'broken'"),
         (("1,2,5,", "1,3,5,"), "row 1, column 3 is not on a pad of 2 x 3"),
-        (("1,2,5,1.5,1", "1,2,5,-2,1"), "noise must be 0 or more and gain above 0, got -2"),
-        (("1,2,5,", "1,2,five,"), ":7: is no element"),
-        (("offset", "zero"), r"needs the columns .*lacks \['offset'\]"),
+        (("1,2,5,1.5,1", "1,2,5,-2,1"), "noise must be finite and >= 0, got -2"),
+        (("1,2,5,", "1,2,nan,"), ":7: offset must be finite, got nan"),
+        (("1,2,5,1.5,1,", "1,2,5,1.5,inf,"), ":7: gain must be finite and > 0, got inf"),
+        (("1,2,5,", "1,2,five,"), ":7: offset must be a number, got 'five'"),
+        (("1,2,5,1.5,1,dead", "1;2;5;1.5;1;dead"), ":7: row must be a whole number, got '1;2;5"),
+        (("1,2,5,1.5,1,dead", "1,2"), ":7: offset must be a number, got nothing: the line ends"),
+        (("1,2,5,", "0,0,5,"), ":7: row 0, column 0 is given twice; the first is in line 2"),
+        (("offset", "zero"), r"needs the columns .*lacks offset, got 'row,column,zero,"),
     ],
 )
 def test_a_wrong_table_is_refused_by_line(
@@ -82,3 +87,12 @@ def test_a_wrong_table_is_refused_by_line(
     path.write_text(path.read_text().replace(*changed))
     with pytest.raises(DataError, match=match):
         read_elements(path, (2, 3))
+
+
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_a_table_that_a_spreadsheet_saved_is_read(tmp_path: Path, mark: str) -> None:
+    path = tmp_path / "t.csv"
+    write_elements(path, elements())
+    path.write_text(path.read_text().replace(",", mark).replace(".", ","))
+    found = read_elements(path, (2, 3))
+    assert all((a == b).all() for a, b in zip(found, elements(), strict=True))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
 import sys
 import types
 from importlib.metadata import version
@@ -347,3 +349,18 @@ def test_schema_names_the_steps_it_left_open(hand_made, monkeypatch):
     got = call("schema")
     assert got.exit_code == 0
     assert "left open: 'lost' of plugin 'hand'" in got.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("words", ["foo ", "run circle-1 --no-such ", "run --plugins -nosuch "])
+def test_completing_a_word_of_a_line_that_is_wrong_says_nothing(words: str) -> None:
+    asked = {
+        "_TACTILE_GRAPH_COMPLETE": "bash_complete",
+        "COMP_WORDS": f"tactile-graph {words}",
+        "COMP_CWORD": str(len(words.split(" "))),
+    }
+    got = subprocess.run(
+        [Path(sys.executable).with_name("tactile-graph")], env={**os.environ, **asked},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert (got.stdout, got.stderr) == ("", "")

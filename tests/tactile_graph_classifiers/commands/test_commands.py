@@ -77,6 +77,16 @@ def test_objects_are_learned_listed_described_and_forgotten(recordings):
     assert answer("objects") == (0, "tactile-objects.sqlite: no objects\n")
 
 
+def test_learning_the_same_frames_twice_is_told(recordings):
+    assert "count twice" not in call("learn", "small", recordings["small"], "--frames", 4)[1]
+    code, answered, told = run("learn", "small", recordings["small"], "--frames", "2:7")
+    assert code == 0
+    assert "5 readings learned, 9 in all" in answered
+    assert "2 of these were learned before, from the same frames, and count twice now; " in told
+    assert "tactile-graph forget small begins anew" in told
+    assert "count twice" not in call("learn", "large", recordings["small"], "--frames", 3)[1]
+
+
 @pytest.mark.slow
 def test_recordings_are_identified_frame_by_frame_and_strangers_are_unknown(recordings):
     learned(recordings)
