@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
 )
 @click.option("--baud", type=click.IntRange(min=1), help="Instead of the preset's.")
 @click.option("--frames", "n_frames", type=click.IntRange(min=1), help="End after so many.")
-@click.option("--seconds", type=click.FloatRange(min=0, min_open=True), help="End after so long.")
+@click.option("--seconds", type=Finite(min=0, min_open=True), help="End after so long.")
 @click.option("--pad", default="", help="Name of the pad, kept with the recording.")
 @click.option("--append", is_flag=True, help="Go on with a recording that is there.")
 @click.option(
@@ -51,7 +52,7 @@ FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
 )
 @click.option(
     "--give-up",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Finite(min=0, min_open=True),
     help="End after so many seconds without a frame; otherwise it waits for the pad.",
 )
 def record(

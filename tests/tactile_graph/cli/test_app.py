@@ -77,7 +77,10 @@ def test_a_plugins_command_runs_takes_the_shared_options_and_returns_no_exit_cod
         (["hello", "--fial"], "--fial"),
         (["lost"], "'lost' of plugin 'hand' (package hand-made): cannot import tg_no_such_module"),
         (["gone"], "tg_test_commands has no 'gone'"),
-        (["number"], "command 'number' of plugin 'hand' (package hand-made) is no click command"),
+        (
+            ["number"],
+            "command 'number' of plugin 'hand' (package hand-made) must be a click.Command",
+        ),
         (["helo"], "no command named 'helo'; did you mean 'hello'?"),
         (["drawing"], "no command named 'drawing'; 'graph' is about 'draw'"),
         (["xyzzy"], "no command named 'xyzzy'; there are: check, explain, gone,"),
