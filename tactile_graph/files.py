@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import signal
 import stat
 import threading
@@ -17,6 +18,7 @@ from typing import Any, BinaryIO
 from tactile_graph.errors import UsageError
 
 Name = str | os.PathLike[str]
+_ERRNO = re.compile(r"\berrno\W+(\d+)", re.I)
 
 
 @contextmanager
@@ -109,8 +111,14 @@ def uninterrupted() -> Iterator[None]:
 
 
 @contextmanager
-def said(name: Name) -> Iterator[None]:
+def said(name: Name, left: str = "") -> Iterator[None]:
     """Say which file it is that cannot be written, and why, in place of any OSError.
+
+    Parameters
+    ----------
+    name : path
+    left : str, optional
+        What there is of it then.
 
     Raises
     ------
@@ -121,8 +129,20 @@ def said(name: Name) -> Iterator[None]:
     except BrokenPipeError:  # whoever read it is gone: no trouble with the file
         raise
     except OSError as error:
-        why = error.strerror or error
-        raise UsageError(f"{os.fspath(name)}: cannot be written: {why}") from error
+        told = f"{os.fspath(name)}: cannot be written: {_why(error)}"
+        raise UsageError(f"{told}; {left}" if left else told) from error
+
+
+def _why(error: OSError) -> str:
+    """Return the system's word for it, which libraries may hand on by its number in a text."""
+    told = error.strerror or str(error)
+    number = _ERRNO.search(told)
+    return os.strerror(int(number[1])) if number else told
+
+
+def left_of(target: Path) -> str:
+    """Return what there is under the name of what gets it only when it is whole."""
+    return "the older one stays" if target.exists() else "nothing of it is kept"
 
 
 SETTLED_S = 2.0

@@ -13,6 +13,7 @@ from typing import Any
 import click
 
 from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
+from tactile_graph.cli.readable import encoding_of, open_all_readable, readable
 from tactile_graph.cli.say import say
 from tactile_graph.errors import PipelineError, PluginError, TactileGraphError, text_of
 from tactile_graph.foreign_text import visible
@@ -34,6 +35,7 @@ def ending(run: Callable[[], Any], debug: bool) -> int:
         Show tracebacks.
     """
     Interrupts.latest = None
+    open_all_readable()
     try:
         with Interrupts():
             code = run()
@@ -123,4 +125,5 @@ def words(error: BaseException) -> str:
 
 
 def _line(text: str) -> None:
-    click.echo(f"{click.style('error:', fg='red', bold=True)} {visible(text)}", err=True)
+    told = readable(visible(text), encoding_of(sys.stderr))
+    click.echo(f"{click.style('error:', fg='red', bold=True)} {told}", err=True)

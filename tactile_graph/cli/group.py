@@ -13,7 +13,7 @@ import click
 
 from tactile_graph.cli import endings, shared
 from tactile_graph.cli.say import say
-from tactile_graph.errors import PluginError, TactileGraphError, did_you_mean, one_of
+from tactile_graph.errors import TactileGraphError, did_you_mean, one_of
 from tactile_graph.plugins import registry
 
 
@@ -54,6 +54,7 @@ class Group(click.Group):
         PluginError
             If a plugin's command cannot be imported or is none.
         """
+        command: click.Command
         if cmd_name in self.built_in:
             from importlib import import_module
 
@@ -62,9 +63,6 @@ class Group(click.Group):
             command = registry.installed().load("commands", cmd_name)
         else:
             return None
-        if not isinstance(command, click.Command):
-            label = registry.installed().offer("commands", cmd_name).plugin.label
-            raise PluginError(f"command {cmd_name!r} of {label} is no click command: {command!r}")
         shared.add_options(command)
         return command
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from tactile_graph.errors import UsageError, did_you_mean, one_of
+from tactile_graph.errors import TactileGraphError, UsageError, did_you_mean, one_of
 from tactile_graph.plugins.names import OWN, Plugin
 from tactile_graph.plugins.registry import Registry
 
@@ -30,6 +31,7 @@ def show_checked(found: Registry, name: str) -> bool:
     for plugin in _asked(found, name):
         with out.status(plugin.name) as status:
             report = examine_plugin(plugin, found, lambda what: status.update(f"trying {what}"))
+        report.broken += [*_wrong_readers(found, plugin), *hidden_commands(plugin)]
         _show(out, report)
         right &= not report.broken
     return right
@@ -48,6 +50,34 @@ def _asked(found: Registry, name: str) -> list[Plugin]:
         own = one_of([p.name for p in found.plugins], 20)
         raise UsageError(f"no plugin of others is installed; --check NAME takes one of: {own}")
     return others
+
+
+def hidden_commands(plugin: Plugin) -> Iterator[str]:
+    """Yield what is said of a plugin's commands that the project has itself."""
+    from tactile_graph.cli.app import COMMANDS
+
+    for name in plugin.offers.get("commands", ()):
+        if name in COMMANDS:
+            yield f"command {name!r} of {plugin.label} is refused: tactile-graph has its own"
+
+
+def _wrong_readers(found: Registry, plugin: Plugin) -> Iterator[str]:
+    """Yield why the command line could not have recordings read by steps that are there."""
+    from tactile_graph.steps.signature import Kind
+
+    for plain in plugin.offers.get("readers", ()):
+        name = found.spelled("readers", f"{plugin.name}.{plain}")
+        try:
+            signature = found.step(name)
+        except TactileGraphError:  # told already
+            continue
+        setting = str(found.offer("readers", name).target)
+        known = [s.name for s in signature.settings]
+        if signature.kind is not Kind.SOURCE:
+            yield f"reader {name!r}: this step is no source: it yields no frames"
+        elif setting not in known:
+            hint = did_you_mean(setting, known) or f"; its settings are: {one_of(known)}"
+            yield f"reader {name!r}: the step has no setting {setting!r}{hint}"
 
 
 def _show(out: Console, report: PluginReport) -> None:

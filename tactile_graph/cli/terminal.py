@@ -12,6 +12,7 @@ from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
 from rich.text import Text
 
+from tactile_graph.cli.readable import readable
 from tactile_graph.foreign_text import visible
 
 WIDE = 200
@@ -20,7 +21,7 @@ WIDE = 200
 class _Console(Console):
     def render_str(self, text: str, **style: Any) -> Text:
         """Spell out what a name would do before it is measured for a table."""
-        return super().render_str(visible(text), **style)
+        return super().render_str(readable(visible(text), self.encoding), **style)
 
     def render(
         self, renderable: RenderableType, options: ConsoleOptions | None = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from decimal import Decimal
 from math import inf
 from typing import Any
 
@@ -73,6 +74,20 @@ class Declaration:
     outputs: list[str] = field(default_factory=list)
 
 
+def _number_typo(value: Any) -> str:
+    """Return how a number is written that YAML 1.1 reads as a text: 2e4, or one in quotes."""
+    try:
+        number = float(value) if isinstance(value, str) else inf
+    except ValueError:
+        return ""
+    if not 1e-9 < number < 1e15:
+        return ""
+    plain = f"{number:.12f}".rstrip("0").rstrip(".")
+    mantissa, exponent = f"{Decimal(plain).normalize():e}".split("e")
+    mantissa += "" if "." in mantissa else ".0"
+    return f"; as a number YAML takes {plain} or {mantissa}e{exponent}"
+
+
 def kind_of(value: Any) -> str:
     """Return what a person calls the kind of a YAML value."""
     kinds = {
@@ -135,7 +150,8 @@ class _Declarer:
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if number and 0 < value < inf:
             return float(value)
-        self.problem(f"{what} must be a number above 0, got {kind_of(value)}", *path, key)
+        told = f"got {kind_of(value)}{_number_typo(value)}"
+        self.problem(f"{what} must be a number above 0, {told}", *path, key)
         return None
 
     def yes_or_no(self, data: dict[str, Any], key: str, path: Path, what: str) -> bool:

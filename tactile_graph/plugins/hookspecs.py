@@ -114,7 +114,7 @@ def tactile_graph_file_kinds() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Kind of YAML file (``"pad"``) -> import string of its `FileKind`, for check and schema."""
 
 
-@hook(Answer())
+@hook_of("click:Command")
 def tactile_graph_commands() -> Mapping[str, str]:  # type: ignore[empty-body]
     """Command name -> import string of a click command, ``"package.module:name"``."""
 

@@ -264,17 +264,19 @@ class Registry:
 
     def _loaded(self, kind: str, offer: Offer) -> Any:
         if isinstance(offer.target, str):
-            offer.target = _import(offer)
-            self._hold_against_hook(kind, offer)
+            target = _import(offer)
+            self._hold_against_hook(kind, offer, target)
+            offer.target = target
         return offer.target
 
-    def _hold_against_hook(self, kind: str, offer: Offer) -> None:
+    def _hold_against_hook(self, kind: str, offer: Offer, target: Any) -> None:
         module, _, wanted = self._hooks[kind].record.partition(":")
         record = getattr(importlib.import_module(module), wanted) if module else object
-        if not isinstance(offer.target, record):
+        if not isinstance(target, record):
+            ours = module.startswith(f"{__package__.partition('.')[0]}.")
             raise PluginError(
-                f"{singular(kind)} {offer.name!r} of {offer.plugin.label} must be a {wanted}, "
-                f"got {shown(offer.target)}"
+                f"{singular(kind)} {offer.name!r} of {offer.plugin.label} must be a "
+                f"{wanted if ours else f'{module}.{wanted}'}, got {shown(target)}"
             )
 
     def step(self, name: str, file: str = "") -> Signature:

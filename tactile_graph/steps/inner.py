@@ -13,39 +13,98 @@ Place = tuple[str | int, ...]
 
 
 def fields(annotation: Any) -> dict[str, Any]:
-    """Return name and annotation of each field of a dataclass, model or TypedDict, else none.
+    """Return name and annotation of each field of a dataclass, model, typed dict or named
+    tuple, else none.
 
     Of a union, those of its members together.
     """
-    bare, _ = strip(annotation)
-    if get_origin(bare) in (Union, types.UnionType):
-        found: dict[str, Any] = {}
-        for member in get_args(bare):
-            found = {**fields(member), **found}
-        return found
+    found: dict[str, Any] = {}
+    for bare in members(annotation):
+        names = _names(bare)
+        if not names:
+            continue
+        try:
+            hints = get_type_hints(bare, include_extras=True)
+        except Exception:  # names that only a type checker sees
+            hints = {}
+        found = {**{told: hints.get(name, Any) for told, name in names.items()}, **found}
+    return found
+
+
+def _names(bare: Any) -> dict[str, str]:
+    """Return the name of each field by the one that a file gives it."""
     if not isinstance(bare, type):
         return {}
     if dataclasses.is_dataclass(bare):
-        names = [f.name for f in dataclasses.fields(bare) if f.init]
-    elif hasattr(bare, "model_fields"):
-        names = list(bare.model_fields)
-    elif issubclass(bare, dict) and hasattr(bare, "__total__"):
-        names = list(bare.__annotations__)
-    else:
-        return {}
-    try:
-        hints = get_type_hints(bare, include_extras=True)
-    except Exception:  # names that only a type checker sees
-        hints = {}
-    return {name: hints.get(name, Any) for name in names}
+        return {f.name: f.name for f in dataclasses.fields(bare) if f.init}
+    if hasattr(bare, "model_fields"):
+        told = {name: field.validation_alias for name, field in bare.model_fields.items()}
+        return {alias if isinstance(alias, str) else name: name for name, alias in told.items()}
+    if issubclass(bare, dict) and hasattr(bare, "__total__"):
+        return {name: name for name in bare.__annotations__}
+    if issubclass(bare, tuple) and hasattr(bare, "_fields"):
+        return {name: name for name in bare._fields}
+    return {}
 
 
 def item(annotation: Any, part: str | int) -> Any:
-    """Return the annotation of a field or of a list's items, Any if there is none to know."""
-    if isinstance(part, int):
-        found = list_item(strip(annotation)[0])
-        return Any if found is None else found
-    return fields(annotation).get(part, Any)
+    """Return the annotation of a field, of a list's items or a mapping's values.
+
+    Of a union, what each member that holds such things says; Any if there is none to know.
+    """
+    return _any_of([*_items(annotation, part)])
+
+
+def _items(annotation: Any, part: str | int) -> Iterator[Any]:
+    for bare in members(annotation):
+        known = fields(bare)
+        args = get_args(bare)
+        if part in known:
+            yield known[str(part)]
+        elif _is_mapping(bare):
+            yield from args[1:]
+        elif isinstance(part, int) and hasattr(bare, "_fields"):
+            yield from list(known.values())[part : part + 1]
+        elif isinstance(part, int) and n_items(bare):
+            yield from args[part : part + 1]
+        elif isinstance(part, int) and (found := list_item(bare)) is not None:
+            yield found
+
+
+def members(annotation: Any) -> list[Any]:
+    """Return the bare types of which a value may be any: those of a union, else the one."""
+    bare, _ = strip(annotation)
+    if get_origin(bare) not in (Union, types.UnionType):
+        return [bare]
+    return [m for arm in get_args(bare) for m in members(arm)]
+
+
+def key_of(annotation: Any) -> Any:
+    """Return the annotation of a mapping's keys, Any if there is none to know."""
+    return _any_of([get_args(bare)[0] for bare in members(annotation) if _is_mapping(bare)])
+
+
+def n_items(annotation: Any) -> int:
+    """Return how many items a tuple has, 0 where that is left open."""
+    for bare in members(annotation):
+        args = get_args(bare)
+        if get_origin(bare) is tuple and Ellipsis not in args:
+            return len(args)
+    return 0
+
+
+def _any_of(annotations: list[Any]) -> Any:
+    if len(annotations) < 2:
+        return annotations[0] if annotations else Any
+    try:
+        return Union[tuple(annotations)]  # noqa: UP007 -- as many as there are
+    except TypeError:  # metadata without a hash
+        return annotations[0]
+
+
+def _is_mapping(bare: Any) -> bool:
+    origin = get_origin(bare)
+    return isinstance(origin, type) and issubclass(origin, Mapping) and len(get_args(bare)) == 2
 
 
 def place(given: Any, parts: tuple[str | int, ...]) -> Place:
@@ -68,11 +127,20 @@ def place(given: Any, parts: tuple[str | int, ...]) -> Place:
 
 
 def leaves(annotation: Any, given: Any, at: Place = ()) -> Iterator[tuple[Place, Any, Any]]:
-    """Yield place, annotation and value of each field given within a mapping, deeper ones too."""
-    known = fields(annotation) if isinstance(given, Mapping) else {}
-    if not known:
+    """Yield place, annotation and value of all that is given within mappings and lists.
+
+    A mapping or list of which nothing tells what is in it is one of these itself; fields that
+    nothing is known of are left out.
+    """
+    within: list[tuple[Any, Any]] = []
+    if isinstance(given, Mapping):
+        within = [*given.items()]
+    elif isinstance(given, list | tuple):
+        within = [*enumerate(given)]
+    known = [
+        (part, value, kind) for part, value in within if (kind := item(annotation, part)) is not Any
+    ]
+    if not known and not (within and fields(annotation)):
         yield at, annotation, given
-        return
-    for name, value in given.items():
-        if name in known:
-            yield from leaves(known[name], value, (*at, name))
+    for part, value, kind in known:
+        yield from leaves(kind, value, (*at, part))

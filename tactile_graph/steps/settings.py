@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import re
-import types
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Union, get_args, get_origin
+from typing import Any, Literal, get_args, get_origin
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from tactile_graph.errors import did_you_mean, key_typo, one_of, shown
-from tactile_graph.steps.inner import Place, fields, item, leaves, place
-from tactile_graph.steps.signature import Setting, Signature, strip, type_name
+from tactile_graph.steps.inner import (
+    Place,
+    fields,
+    item,
+    key_of,
+    leaves,
+    members,
+    n_items,
+    place,
+)
+from tactile_graph.steps.keys import refuse_unknown_keys
+from tactile_graph.steps.signature import Setting, Signature, type_name
 
 Trouble = tuple[tuple[str | int, ...], str]
 """Where in the settings, and what is wrong there."""
@@ -26,9 +35,16 @@ _WORDS = {
     Path: "a path",
     type(None): "null",
 }
+_MEANT = {"int": int, "float": float, "string": str, "bool": bool, "path": Path}
+"""What an error is about, by the first word of its name, where no annotation tells."""
+_UNKNOWN = ("unexpected_keyword_argument", "extra_forbidden")
+_TELLING = (*_UNKNOWN, "literal_error", "value_error")
 _QUOTED = re.compile(r"\s*[-+]?(\d+|\d*\.\d+|\d+\.\d*)\s*")
 """Numbers that are a text only where somebody quoted them: YAML reads 5e-1 as one by itself."""
 _WITH_UNIT = re.compile(r"\s*([-+]?\d*[.,]?\d+(?:[eE][-+]?\d+)?)\s*([A-Za-z%°µΩ]*)\s*")
+_READ_AS = {True: ("on", "yes", "true"), False: ("off", "no", "false")}
+"""Words that YAML reads as something else without quotes."""
+LARGEST_EXACT = 2.0**53
 _COMPARISONS = {
     "greater_than": ("gt", ">"),
     "greater_than_equal": ("ge", ">="),
@@ -41,10 +57,11 @@ _COMPARISONS = {
 @lru_cache(maxsize=1024)
 def _adapter(setting: Setting) -> TypeAdapter[Any]:
     try:
-        return TypeAdapter(setting.annotation, config=ConfigDict(arbitrary_types_allowed=True))
+        made = TypeAdapter(setting.annotation, config=ConfigDict(arbitrary_types_allowed=True))
     except Exception:
         # A dataclass or model carries its own configuration and takes none from outside.
-        return TypeAdapter(setting.annotation)
+        made = TypeAdapter(setting.annotation)
+    return refuse_unknown_keys(made)
 
 
 def adapter(setting: Setting) -> TypeAdapter[Any]:
@@ -94,17 +111,41 @@ def _mistyped(setting: Setting, value: Any) -> dict[Place, str]:
     wrong: dict[Place, str] = {}
     for at, annotation, leaf in leaves(setting.annotation, value):
         if isinstance(leaf, bool) and not _takes_bool(annotation):
-            wrong[at] = f"must be {_allowed(annotation)}, got {shown(leaf)}"
-        elif isinstance(leaf, str) and _QUOTED.fullmatch(leaf) and _only_numbers(annotation):
-            told = f"got the text {shown(leaf)}; without the quotes it is a number"
+            told = f"got {shown(leaf)}{_unquoted(leaf, annotation)}"
             wrong[at] = f"must be {_allowed(annotation)}, {told}"
+        elif isinstance(leaf, str) and _QUOTED.fullmatch(leaf) and _only_numbers(annotation):
+            fits = float in members(annotation) or _whole(leaf)
+            hint = "; without the quotes it is a number" if fits else ""
+            wrong[at] = f"must be {_allowed(annotation)}, got the text {shown(leaf)}{hint}"
     return wrong
 
 
+def _unquoted(got: Any, annotation: Any) -> str:
+    """Return which quotes make a text of what YAML read as something else, empty if none do."""
+    spelled_so = _READ_AS.get(got, ()) if isinstance(got, bool) else (str(got),)
+    texts = [v for v in _choices(annotation) if isinstance(v, str) and v.lower() in spelled_so]
+    if texts:
+        return f"; put it in quotes: {shown(texts[0])}"
+    return "; a text stands in quotes" if str in members(annotation) else ""
+
+
+def _choices(annotation: Any) -> list[Any]:
+    """Return the values of which one must be given."""
+    kinds = members(annotation)
+    return [value for kind in kinds if get_origin(kind) is Literal for value in get_args(kind)]
+
+
+def _choice_typo(got: Any, annotation: Any) -> str:
+    """Return what was meant by what is none of the choices, empty where nothing is like it."""
+    choices = _choices(annotation)
+    if isinstance(got, str) and any(str(c) == got and not isinstance(c, str) for c in choices):
+        return f"; without the quotes it is one: {got}"
+    near = did_you_mean(got if isinstance(got, str) else shown(got), map(str, choices))
+    return _unquoted(got, annotation) or near if not isinstance(got, str) else near
+
+
 def _only_numbers(annotation: Any) -> bool:
-    bare = strip(annotation)[0]
-    arms = get_args(bare) if get_origin(bare) in (Union, types.UnionType) else (bare,)
-    return all(strip(arm)[0] in (int, float, type(None)) for arm in arms)
+    return {*members(annotation)} <= {int, float, type(None)}
 
 
 def _takes_bool(annotation: Any) -> bool:
@@ -116,12 +157,10 @@ def _takes_bool(annotation: Any) -> bool:
 
 def _allowed(annotation: Any) -> str:
     """Return what is allowed as people who write YAML say it: ``a number or null``."""
-    bare = strip(annotation)[0]
-    arms = get_args(bare) if get_origin(bare) in (Union, types.UnionType) else (bare,)
-    kinds = [strip(arm)[0] for arm in arms]
-    if all(kind in _WORDS for kind in kinds):
+    kinds = members(annotation)
+    if all(isinstance(kind, type) and kind in _WORDS for kind in kinds):
         return " or ".join(_WORDS[kind] for kind in kinds)
-    return type_name(bare)
+    return type_name(annotation)
 
 
 def _unknown(signature: Signature, name: str, known: list[str]) -> str:
@@ -131,15 +170,33 @@ def _unknown(signature: Signature, name: str, known: list[str]) -> str:
     return f"unknown setting {name!r}{hint or f'; {signature.name} takes: {one_of(known)}'}"
 
 
+def _unknown_field(name: str, annotation: Any) -> str:
+    known = list(fields(annotation))
+    if name in known:  # of one type that may stand there, but not of the one that fits the rest
+        return f"setting {name!r} does not go with the others given here"
+    hint = did_you_mean(name, known) or f"; {_allowed(annotation)} takes: {one_of(known)}"
+    return f"unknown setting {name!r}{hint}"
+
+
 def _number_typo(got: Any, annotation: Any) -> str:
     """Return what makes a text of what was meant as a number; empty where it was not."""
     found = _WITH_UNIT.fullmatch(got) if isinstance(got, str) else None
     if found is None or not _only_numbers(annotation):
         return ""
     number, unit = found[1].replace(",", "."), found[2]
+    if float not in members(annotation):
+        number = _whole(number)
+    if not number:
+        return ""
     if unit:
         return f"; a number stands without its unit: {number}"
-    return f"; its decimals stand behind a point: {number}"
+    return f"; its decimals stand behind a point: {number}" if "," in got else f"; write {number}"
+
+
+def _whole(number: str) -> str:
+    """Return a number as whole ones are written, empty where it is none or has no end."""
+    value = float(number)
+    return str(int(value)) if value.is_integer() and abs(value) < LARGEST_EXACT else ""
 
 
 def _shortest(error: ValidationError, given: Any) -> dict[Place, Any]:
@@ -154,12 +211,18 @@ def _shortest(error: ValidationError, given: Any) -> dict[Place, Any]:
             seen[at] = e
     for loc, e in absent.items():
         seen.setdefault(place(given, loc), e)
-    return seen
+    return {at: e for at, e in seen.items() if not _of_another_arm(at, e, seen)}
+
+
+def _of_another_arm(at: Place, e: Any, seen: Mapping[Place, Any]) -> bool:
+    """Return whether an arm of a union takes no such thing at all, and one went into it."""
+    deeper = any(len(other) > len(at) and other[: len(at)] == at for other in seen)
+    return deeper and str(e["type"]).endswith("_type")
 
 
 def _rank(e: Any) -> int:
     kind = str(e["type"])
-    return 0 if kind in _COMPARISONS else 1 if kind in ("literal_error", "value_error") else 2
+    return 0 if kind in _COMPARISONS else 1 if kind in _TELLING else 2
 
 
 def _words(e: Any, setting: Setting, at: Place) -> str:
@@ -167,26 +230,31 @@ def _words(e: Any, setting: Setting, at: Place) -> str:
     annotation, above = setting.annotation, setting.annotation
     for part in at:
         annotation, above = item(annotation, part), annotation
-    if kind in ("unexpected_keyword_argument", "extra_forbidden"):
-        known = list(fields(above))
-        hint = did_you_mean(str(at[-1]), known) or f"; {_allowed(above)} takes: {one_of(known)}"
-        return f"unknown setting {str(at[-1])!r}{hint}"
+    if kind in _UNKNOWN:
+        return _unknown_field(str(at[-1]), above)
     if kind.startswith("missing"):
         wanted = e["loc"][-1]
+        if isinstance(got, list | tuple):
+            return f"{n_items(annotation)} items needed, got {len(got)}"
         return f"{wanted!r} is missing ({_allowed(item(annotation, wanted))})"
+    if e["loc"][-1:] == ("[key]",):
+        return f"its key must be {_allowed(key_of(above))}, got {shown(got)}"
+    if annotation is Any:
+        annotation = _MEANT.get(kind.partition("_")[0], Any)
     if isinstance(got, Mapping) and kind.endswith("_type"):
         got = dict(got)
     if kind in _COMPARISONS:
         key, sign = _COMPARISONS[kind]
         return f"must be {sign} {context[key]}, got {shown(got)}"
     if kind == "literal_error":
-        names = [part.strip().strip("'") for part in _allowed(annotation).split("|")]
-        hint = did_you_mean(got if isinstance(got, str) else shown(got), names)
-        return f"must be one of {_allowed(annotation)}, got {shown(got)}{hint}"
+        told = f"got {shown(got)}{_choice_typo(got, annotation)}"
+        return f"must be one of {_allowed(annotation)}, {told}"
     if kind == "value_error":
         return f"{context.get('error', e['msg'])}"
     if kind.endswith(("_parsing", "_type", "_from_float")):
         return f"must be {_allowed(annotation)}, got {shown(got)}{_number_typo(got, annotation)}"
     if kind in ("too_short", "too_long"):
+        if n_items(annotation):
+            return f"{n_items(annotation)} items needed, got {context['actual_length']}"
         return f"{str(e['msg'])[0].lower()}{str(e['msg'])[1:]}"
     return f"must be {_allowed(annotation)}, got {shown(got)} ({e['msg']})"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
-from tactile_graph.cli.say import say
+from tactile_graph.cli.say import hand_over, say
 from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option, print_table, tell_apart
 
@@ -60,7 +60,7 @@ def _export(known: Known, file: str) -> None:
 
     text = to_text(known)
     if file == "-":
-        say(text, nl=False)
+        hand_over(text)
         return
     write_whole(file, text)
     say(f"{file}: {len(known.objects)} objects exported")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ def database_option(command: F) -> F:
         click.option(
             "--wait",
             "timeout_s",
-            type=click.FloatRange(min=0.0),
+            type=Finite(min=0.0),
             default=5.0,
             show_default=True,
             metavar="SECONDS",

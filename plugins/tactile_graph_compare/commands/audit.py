@@ -25,6 +25,7 @@ from tactile_graph.cli.many.options import (
     side_by_side,
     workers_options,
 )
+from tactile_graph.cli.numbers import Finite
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
@@ -45,7 +46,7 @@ shown.
 @source_options
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
               help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
-@click.option("--sample", type=click.FloatRange(0.0, 1.0, min_open=True), default=1.0,
+@click.option("--sample", type=Finite(0.0, 1.0, min_open=True), default=1.0,
               show_default=True, metavar="SHARE",
               help="Take this share of the frames, drawn at random; all where a step keeps "
               "state.")  # fmt: skip

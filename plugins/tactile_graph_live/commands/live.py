@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tactile_graph.cli.arguments import Span, pipeline_argument
+from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 
@@ -66,7 +67,7 @@ def parse_deadline(ctx: click.Context, param: click.Parameter, value: str | None
               help="A setting of the source; can be repeated.")  # fmt: skip
 @click.option("--set", "settings", metavar="NODE.SETTING=VALUE", multiple=True,
               help="A setting of a node instead of the file's; can be repeated.")  # fmt: skip
-@click.option("--rate", "rate_hz", type=click.FloatRange(min=0, min_open=True), metavar="HZ",
+@click.option("--rate", "rate_hz", type=Finite(min=0, min_open=True), metavar="HZ",
               help="Play a recording, or what is simulated, at so many frames a second instead of "
               "by its own times.")  # fmt: skip
 @click.option("--unpaced", is_flag=True, help="Take frames as fast as the source gives them.")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ class _Group(click.ParamType):  # type: ignore[type-arg,unused-ignore]
               help="Take the pad's crosstalk out first: a curve of conductance.")  # fmt: skip
 @click.option("--empty", type=click.Path(exists=True, path_type=Path),
               help="A recording of the empty pad; its median is taken off.")  # fmt: skip
-@click.option("--full-scale", type=float, help="Reading from which on an element is saturated.")
+@click.option("--full-scale", type=Finite(), help="Reading from which on an element is saturated.")
 @click.option("--about", default="", help="A line for people, kept in the file.")
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path),
               help="Draw points, error bars and curve (.png, .svg, .pdf).")  # fmt: skip

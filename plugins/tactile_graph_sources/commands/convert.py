@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 from tactile_graph.plugins.registry import installed
 
@@ -46,7 +47,7 @@ OFFERS = "recording_writers"
 )
 @click.option("--rows", type=click.IntRange(min=1), help="Rows, where the file cannot tell.")
 @click.option("--columns", type=click.IntRange(min=1), help="Columns, likewise.")
-@click.option("--pitch-cm", type=click.FloatRange(min=0, min_open=True), help="Pitch, likewise.")
+@click.option("--pitch-cm", type=Finite(min=0, min_open=True), help="Pitch, likewise.")
 @click.option("--quantity", help="What the values mean, likewise.")
 @click.option(
     "--truth",

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ USUAL = "serial"
 @click.option(
     "--wait",
     "wait_s",
-    type=click.FloatRange(min=0.0, min_open=True),
+    type=Finite(min=0.0, min_open=True),
     metavar="SECONDS",
     help="Wait for a pad to be plugged in and name its port.",
 )

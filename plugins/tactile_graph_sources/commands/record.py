@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
+    from tactile_graph.errors import DataError
     from tactile_graph.steps.injected import Report
     from tactile_graph.wires.frame import Frame
     from tactile_graph_sources.writers.write_store import StoreWriter
@@ -21,9 +23,15 @@ if TYPE_CHECKING:
 SHOW_EVERY_S = 0.5
 UNTOLD = ("bytes", "good frames", "frames", "troubles")
 FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
+EXIT_CODES = """\b
+Exit codes:
+  0    done; frames were written, until Ctrl-C or the pad was given up too
+  2    not done: no frame was written, or something went wrong on the way
+  143  ended by SIGTERM (129: its terminal was closed); what came is kept
+"""
 
 
-@click.command()
+@click.command(epilog=EXIT_CODES)
 @click.argument("target", type=click.Path(path_type=Path))
 @click.option("--port", help="Device or pyserial URL; see 'ports'.")
 @click.option("--device", default="serial", show_default=True,
@@ -39,7 +47,7 @@ FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
 )
 @click.option("--baud", type=click.IntRange(min=1), help="Instead of the preset's.")
 @click.option("--frames", "n_frames", type=click.IntRange(min=1), help="End after so many.")
-@click.option("--seconds", type=click.FloatRange(min=0, min_open=True), help="End after so long.")
+@click.option("--seconds", type=Finite(min=0, min_open=True), help="End after so long.")
 @click.option("--pad", default="", help="Name of the pad, kept with the recording.")
 @click.option("--append", is_flag=True, help="Go on with a recording that is there.")
 @click.option(
@@ -51,7 +59,7 @@ FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
 )
 @click.option(
     "--give-up",
-    type=click.FloatRange(min=0, min_open=True),
+    type=Finite(min=0, min_open=True),
     help="End after so many seconds without a frame; otherwise it waits for the pad.",
 )
 def record(
@@ -74,6 +82,7 @@ def record(
     Frames carry the host's time, the pad's own time where it sends one, and marks where some were
     lost. A pad that is unplugged is waited for.
     """
+    from tactile_graph.cli.endings import NOT_DONE
     from tactile_graph.cli.interrupt import Ended, Interrupts, code_of, words_of
     from tactile_graph.errors import TactileGraphError
     from tactile_graph.steps.injected import Report
@@ -87,13 +96,14 @@ def record(
     limits = {"n_frames": n_frames, "seconds": seconds}
     frames = _frames(step, given, settings, limits, report)
     failure: Exception | None = None
+    gone: list[DataError] = []
     ended: KeyboardInterrupt | None = None
     store: StoreWriter | None = None
     with Interrupts():
         try:
             about = {"preset": preset or "", "pad": pad, "port": port or f"source {source}"}
             with StoreWriter(target, chunk, append, about) as store:
-                _keep(frames, store)
+                _keep(frames if give_up is None else _until_gone(frames, gone), store)
         except KeyboardInterrupt as error:
             ended = error  # the usual way to end a recording; what was held is written by now
         except TactileGraphError as error:
@@ -109,6 +119,25 @@ def record(
     if ended is not None and (store is None or isinstance(ended, Ended)):
         say(words_of(ended), err=True)
         click.get_current_context().exit(code_of(ended))
+    for why in gone:
+        say(f"given up: {why}", err=True)
+    if store is None or store.n_written == store.n_before:
+        click.get_current_context().exit(NOT_DONE)
+
+
+def _until_gone(frames: Iterator[Frame], gone: list[DataError]) -> Iterator[Frame]:
+    """Yield the frames of a source that gives up as it was told; add why, where some came."""
+    from tactile_graph.errors import DataError
+
+    came = False
+    try:
+        for frame in frames:
+            came = True
+            yield frame
+    except DataError as error:
+        if not came:
+            raise
+        gone.append(error)
 
 
 def _frames(
@@ -173,7 +202,7 @@ def _keep(frames: Iterator[Frame], store: StoreWriter) -> None:
 def _tell(store: StoreWriter, report: Report) -> None:
     """Say what is written, and what the link was like, leaving out what is as it should be."""
     n = store.n_written
-    if not store.path.exists():
+    if n == store.n_before:
         say(f"{store.path}: no frame came, and nothing was written", err=True)
         n_bytes = report.counts["bytes"]
         say(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)

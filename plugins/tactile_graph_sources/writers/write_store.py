@@ -111,6 +111,8 @@ class StoreWriter:
         except BaseException:
             self._sole.release()
             raise
+        self.n_before = self.n_written
+        """Frames that were in the store already."""
 
     def __enter__(self) -> StoreWriter:
         return self

@@ -114,7 +114,7 @@ class Targets:
 
     @staticmethod
     def _write_csv(item: Item, made: Made, to: str) -> None:
-        from tactile_graph.cli.say import say
+        from tactile_graph.cli.say import hand_over
         from tactile_graph.errors import UsageError
         from tactile_graph.files import write_whole
         from tactile_graph_thesis.book.files import csv_text
@@ -123,7 +123,7 @@ class Targets:
             raise UsageError(f"--csv: {item.name} has no table")
         text = csv_text(made.table.columns, made.table.rows)
         if to == STDOUT:
-            say(text, nl=False)
+            hand_over(text)
         else:
             write_whole(to, text)
 

@@ -16,6 +16,7 @@ from tactile_graph.cli.arguments import (
     pipeline_argument,
 )
 from tactile_graph.cli.many.options import place_asked, side_by_side, workers_options
+from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
@@ -69,22 +70,22 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
 @click.option("--error", "quantity", metavar="QUANTITY",
               help="What of it counts: centre, radius, angle, identity, …; the first there is "
               "otherwise.")  # fmt: skip
-@click.option("--price", type=click.FloatRange(min=0.0, min_open=True), metavar="ERROR",
+@click.option("--price", type=Finite(min=0.0, min_open=True), metavar="ERROR",
               help="What a missed object counts; an answer off by it has missed.  "
               "[default: 2 cm, 45°, 1 for a wrong name]")  # fmt: skip
-@click.option("--error-at-most", "most_error", type=click.FloatRange(min=0.0), metavar="ERROR",
+@click.option("--error-at-most", "most_error", type=Finite(min=0.0), metavar="ERROR",
               help="Find the cheapest whose mean error, where something lies, is no greater.  "
               "[default: as it is]")  # fmt: skip
-@click.option("--margin", type=click.FloatRange(min=0.0), default=0.0, metavar="SHARE",
+@click.option("--margin", type=Finite(min=0.0), default=0.0, metavar="SHARE",
               help="Share by which the error may be greater than it is, where neither it nor the "
               "time is limited.  [default: 0]")  # fmt: skip
-@click.option("--missed-at-most", "most_missed", type=click.FloatRange(0.0, 1.0), metavar="SHARE",
+@click.option("--missed-at-most", "most_missed", type=Finite(0.0, 1.0), metavar="SHARE",
               help="Miss no more of the frames where something lies.  [default: as it is]",
               )  # fmt: skip
-@click.option("--false-at-most", "most_false", type=click.FloatRange(0.0, 1.0), metavar="SHARE",
+@click.option("--false-at-most", "most_false", type=Finite(0.0, 1.0), metavar="SHARE",
               help="Answer no more of the frames where nothing lies.  [default: as it is]",
               )  # fmt: skip
-@click.option("--time-at-most", "most_us", type=click.FloatRange(min=0.0), metavar="µS",
+@click.option("--time-at-most", "most_us", type=Finite(min=0.0), metavar="µS",
               help="Find the least error that takes no longer, mean over the frames.")  # fmt: skip
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
               help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip

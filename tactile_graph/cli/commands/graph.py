@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tactile_graph.cli.arguments import offered, pipeline_argument
-from tactile_graph.cli.say import say
+from tactile_graph.cli.say import hand_over, say
 from tactile_graph.errors import UsageError, did_you_mean
 from tactile_graph.files import check_target, write_whole
 from tactile_graph.plugins import registry
@@ -58,7 +58,7 @@ def graph(pipeline: str | None, form: str | None, output: str | None) -> None:
     elif isinstance(drawn, bytes):
         click.echo(drawn, nl=False)
     else:
-        say(drawn, nl=False)
+        hand_over(drawn)
 
 
 def on_screen() -> bool:

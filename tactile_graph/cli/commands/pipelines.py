@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tactile_graph.cli.pages.listing import complete, file_text
-from tactile_graph.cli.say import say
+from tactile_graph.cli.say import hand_over
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
 
@@ -69,7 +69,7 @@ def pipelines(words: tuple[str, ...], search: bool) -> None:
     if not words:
         _show_tree(heads(found))
     elif len(words) == 1 and not search and found.has("pipelines", words[0]):
-        say(file_text(found.path("pipelines", words[0])), nl=False)
+        hand_over(file_text(found.path("pipelines", words[0])))
     else:
         _show_hits(found, words)
 

@@ -41,6 +41,7 @@ def _list() -> None:
     from rich.table import Table
     from rich.text import Text
 
+    from tactile_graph.cli.plugin_check import hidden_commands
     from tactile_graph.cli.terminal import console
 
     found = registry.installed()
@@ -67,18 +68,11 @@ def _list() -> None:
         label = found.offer("steps", name).plugin.label
         told = Text.assemble((f"{label}, step {name!r}: ", "bold red"), trouble)
         out.print(told, soft_wrap=True)
-    from tactile_graph.cli.app import COMMANDS
-
     for words in near_groups(registry.GROUP):
         out.print(Text.assemble(("not found: ", "bold red"), words), soft_wrap=True)
-    hidden = [n for n in found.names("commands") if n in COMMANDS]
-    for clash in [*found.clashes, *(_hidden(found, n) for n in hidden)]:
+    hidden = [told for plugin in found.plugins for told in hidden_commands(plugin)]
+    for clash in [*found.clashes, *hidden]:
         out.print(Text.assemble(("clash: ", "bold red"), clash), soft_wrap=True)
-
-
-def _hidden(found: registry.Registry, name: str) -> str:
-    label = found.offer("commands", name).plugin.label
-    return f"command {name!r} of {label} is refused: tactile-graph has its own"
 
 
 def _broken_steps(found: registry.Registry) -> dict[str, str]:

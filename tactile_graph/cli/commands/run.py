@@ -187,6 +187,8 @@ class _Run:
     last_frame_s: float = field(default_factory=time.monotonic)
     n_stalled: int = 0
     error: Exception | None = None
+    written: bool = False
+    """Whether the output was closed with all that was to go into it."""
     compiling: int | None = None
     """The process that still compiles when the frames are done."""
 
@@ -327,17 +329,17 @@ class _Run:
             self._one(results)
         else:
             self._several(results)
-        if first and self.lines is not None:
+        if first and self._keeps():
             self._provenance(complete=False)  # should the run be killed
         self.bar.at(self.tally.n, self.span.expected(self.report.n_expected))
 
     def _one(self, result: Result) -> None:
         self.quantity = result.frame.image.quantity
+        if self.lines is not None:
+            self.lines.write(result)  # before it counts: what cannot be written does not
         self.tally.add(result)
         if self.lines is None:
             self._row(result)
-        else:
-            self.lines.write(result)
         if self.drawing is not None:
             self.drawing.add(result)
 
@@ -346,8 +348,8 @@ class _Run:
 
         assert self.lines is not None  # people are shown one frame after the other
         self.quantity = block.frames.images.quantity
-        self.tally.add_block(block)
         write_block(self.lines, block)
+        self.tally.add_block(block)
 
     def _row(self, result: Result) -> None:
         if self.table is None:
@@ -390,10 +392,31 @@ class _Run:
                 f"--frames {self.span.start}:…: the source gave only {got} frames"
             )
 
+    def _keeps(self) -> bool:
+        """Return whether what is written stays if the run ends here."""
+        return self.lines is not None and getattr(self.lines, "keeps", True)
+
     def _finish_lines(self) -> None:
-        if self.lines is not None:
+        """Close what is written and say beside it how it was made; the first trouble stands."""
+        if self.lines is None:
+            return
+        try:
             self.lines.close()
+            self.written = not self.lines.broken
+        except BrokenPipeError:
+            raise
+        except Exception as error:
+            self.error = self.error or error
+        if not (self.written or self._keeps()):
+            return  # there is nothing for a note to stand beside
+        try:
             self._provenance(complete=self.error is None and not self.interrupted)
+        except UsageError as error:
+            if self.error is None:
+                self.error = error
+            elif str(error) != str(self.error):
+                told = f"{error}: what it says is of the first frame"
+                self.stderr.print(told, style="yellow", soft_wrap=True)
 
     def _provenance(self, complete: bool) -> None:
         from tactile_graph.provenance import provenance, write_provenance
@@ -422,8 +445,7 @@ class _Run:
             names = ", ".join(c.key for c in hidden)
             say.print(f"not shown, for want of width: {names}; -o gives them", style="dim",
                       soft_wrap=True)  # fmt: skip
-        whole = self.output is not None and self.lines is not None and not self.lines.broken
-        written = self.output.name if whole and self.output is not None else None
+        written = self.output.name if self.written and self.output is not None else None
         for name in (written, self.plot if drawn else None):
             if name not in (None, "-"):
                 say.print(f"wrote {name}", style="dim", soft_wrap=True)

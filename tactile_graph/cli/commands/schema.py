@@ -12,7 +12,7 @@ import click
 
 from tactile_graph.cli.endings import NOT_DONE
 from tactile_graph.cli.file_kinds import PIPELINE, YAML, file_kind, kind_names, kind_of
-from tactile_graph.cli.say import say
+from tactile_graph.cli.say import hand_over, say
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, write_whole
 from tactile_graph.foreign_text import visible
@@ -64,7 +64,7 @@ def schema(names: tuple[str, ...], output: str | None, keys: bool, install: bool
     made = _of_file(Path(name)) if name.endswith(YAML) else _made(name)
     text = json.dumps(made, indent=2, ensure_ascii=False) + "\n"
     if output in (None, "-"):
-        say(text, nl=False)
+        hand_over(text)
     else:
         write_whole(str(output), text)
         say(f"wrote {output}", err=True)

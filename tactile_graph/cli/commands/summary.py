@@ -19,7 +19,7 @@ def summary(results: tuple[Path, ...], as_json: bool) -> None:
     known, times. CSV, JSON lines, Parquet; read a chunk at a time, so that files of any size take
     little memory.
     """
-    from tactile_graph.cli.say import say
+    from tactile_graph.cli.say import hand_over
     from tactile_graph.cli.summary.as_data import as_data
     from tactile_graph.cli.summary.reading import chunks
     from tactile_graph.cli.summary.shown import show
@@ -32,6 +32,6 @@ def summary(results: tuple[Path, ...], as_json: bool) -> None:
         for chunk in chunks(path):
             found.add(chunk, path.name, prefix)
     if as_json:
-        say(json.dumps(as_data(found), ensure_ascii=False))
+        hand_over(json.dumps(as_data(found), ensure_ascii=False) + "\n")
         return
     show(console(), ", ".join(map(str, results)), found)

@@ -24,7 +24,7 @@ from tactile_graph.draw.display import view
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed
 from tactile_graph.errors import UsageError, one_of
 from tactile_graph.exporter import Export, Exporter, Writer
-from tactile_graph.files import check_target, said, uninterrupted
+from tactile_graph.files import check_target, left_of, said, uninterrupted
 from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.wiring import arms
 from tactile_graph.quantities import unit_of
@@ -101,6 +101,9 @@ class ImageStore:
         If the library is not installed, or the file cannot be made.
     """
 
+    keeps = False
+    """Whether what is written stays where a run ends early: it stands when it is closed."""
+
     def __init__(self, output: str, form: str, pipeline: Graph, asked: Sequence[str]) -> None:
         if output == "-":
             raise UsageError("-o -: images cannot go to stdout; give a name")
@@ -159,7 +162,7 @@ class ImageStore:
     def _whole(self) -> Iterator[None]:
         """Leave nothing behind where anything is raised."""
         try:
-            with uninterrupted(), said(self.output):
+            with uninterrupted(), said(self.output, left_of(self._target)):
                 yield
         except BaseException:
             self.broken = True

@@ -17,7 +17,7 @@ from tactile_graph.engine.tables.columns import Column
 from tactile_graph.engine.tables.table import Table, units_of
 from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer, check_plain
-from tactile_graph.files import said, uninterrupted
+from tactile_graph.files import left_of, said, uninterrupted
 
 ROWS_A_GROUP = 10_000
 FRAME = "frame"
@@ -50,6 +50,9 @@ class ParquetFile:
         Path. Until the end rows go to a hidden ``.part`` beside it.
     table : Table
     """
+
+    keeps = False
+    """Whether what is written stays where a run ends early: it stands when it is closed."""
 
     def __init__(self, output: str, table: Table) -> None:
         if output == "-":
@@ -100,7 +103,7 @@ class ParquetFile:
     def _whole(self) -> Iterator[None]:
         """Leave nothing behind where anything is raised."""
         try:
-            with uninterrupted(), said(self.output):
+            with uninterrupted(), said(self.output, left_of(self._target)):
                 yield
         except BaseException:
             self.broken = True

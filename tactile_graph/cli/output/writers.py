@@ -230,7 +230,8 @@ class LineFile:
             return
         file = self.open()
         if self.output != "-":
-            file.close()
+            with said(self.output):
+                file.close()
 
     def _put(self, file: BinaryIO, text: str) -> None:
         data = memoryview(text.encode())
@@ -254,7 +255,8 @@ class LineFile:
             os.ftruncate(file.fileno(), self._n_bytes)
         file.close()
         n = self._n_lines
-        kept = f"the first {n} frame{'s are' if n > 1 else ' is'} in it" if n else "it is empty"
+        whole = f"the first {n} frames are" if n > 1 else "the first frame is"
+        kept = f"{whole} in it, and no part of another" if n else "no frame is in it"
         raise UsageError(f"{self.output}: {why}; {kept}") from error
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tactile_graph.cli.say import say
+from tactile_graph.cli.say import hand_over
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
 
@@ -32,7 +32,7 @@ def list_files(kind: str, name: str | None) -> None:
 
     found = registry.installed()
     if name is not None:
-        say(file_text(found.path(kind, name)), nl=False)
+        hand_over(file_text(found.path(kind, name)))
         return
     names = found.names(kind)
     out = console()

@@ -98,3 +98,79 @@ def test_fields_that_may_be_true_or_false_take_it() -> None:
 def test_a_path_is_spelled_with_its_names_only() -> None:
     assert spelled(("model", "steps", 1)) == "model.steps"
     assert spelled(("table",)) == "table"
+
+
+def holds(
+    image: int,
+    *,
+    cells: list[tuple[int, int]] | None = None,
+    rows: list[int] | None = None,
+    factors: dict[str, float] | None = None,
+    names: dict[int, str] | None = None,
+    around: tuple[float, ...] = (),
+    texts: list[str] | None = None,
+    n: int = 3,
+    state: Literal["on", "off"] = "on",
+    order: Literal[3, 4] = 3,
+    version: Literal["3", "4"] = "3",
+    title: str = "",
+) -> int:
+    """Take settings."""
+    return image
+
+
+QUOTED = "got the text '2'; without the quotes it is a number"
+
+
+@pytest.mark.parametrize(
+    ("given", "place", "message"),
+    [
+        ({"cells": [[1, "a"]]}, "cells.0.1", "must be a whole number, got 'a'"),
+        ({"cells": [[1, 2.5]]}, "cells.0.1", "must be a whole number, got 2.5"),
+        ({"cells": [[1]]}, "cells.0", "2 items needed, got 1"),
+        ({"cells": [[1, 2, 3]]}, "cells.0", "2 items needed, got 3"),
+        ({"cells": [[1, "2"]]}, "cells.0.1", f"must be a whole number, {QUOTED}"),
+        ({"cells": [[1, True]]}, "cells.0.1", "must be a whole number, got True"),
+        ({"rows": [1, "2"]}, "rows.1", f"must be a whole number, {QUOTED}"),
+        ({"around": ["2"]}, "around.0", f"must be a number, {QUOTED}"),
+        ({"around": [True]}, "around.0", "must be a number, got True"),
+        ({"factors": {"a": "b"}}, "factors.a", "must be a number, got 'b'"),
+        ({"factors": {"a": "2"}}, "factors.a", f"must be a number, {QUOTED}"),
+        ({"names": {"a": "b"}}, "names.a", "its key must be a whole number, got 'a'"),
+        ({"texts": [2]}, "texts.0", "must be a text, got 2"),
+    ],
+)
+def test_what_is_wrong_within_a_list_or_mapping_is_told_in_words(given, place, message) -> None:
+    _, found = validate_settings(read_signature("holds", holds), given)
+    assert {".".join(map(str, path)): told for path, told in found} == {place: message}
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"n": "1e1"}, "must be a whole number, got '1e1'; write 10"),
+        ({"n": "2.5e3"}, "must be a whole number, got '2.5e3'; write 2500"),
+        ({"n": "1e-1"}, "must be a whole number, got '1e-1'"),
+        ({"n": "1e400"}, "must be a whole number, got '1e400'"),
+        ({"n": "0,5"}, "must be a whole number, got '0,5'"),
+        ({"n": "0.5"}, "must be a whole number, got the text '0.5'"),
+        ({"n": "1e1 mm"}, "got '1e1 mm'; a number stands without its unit: 10"),
+        ({"state": True}, "must be 'on' | 'off', got True; put it in quotes: 'on'"),
+        ({"state": False}, "must be 'on' | 'off', got False; put it in quotes: 'off'"),
+        ({"title": False}, "must be a text, got False; a text stands in quotes"),
+        ({"order": "3"}, "must be one of 3 | 4, got '3'; without the quotes it is one: 3"),
+        ({"version": 3}, "must be one of '3' | '4', got 3; put it in quotes: '3'"),
+    ],
+)
+def test_what_to_write_instead_is_told_where_it_is_known(given, message) -> None:
+    _, found = validate_settings(read_signature("holds", holds), given)
+    assert len(found) == 1
+    assert found[0][1].endswith(message)
+
+
+def test_texts_that_look_like_numbers_stay_texts_where_texts_are_meant() -> None:
+    values, found = validate_settings(
+        read_signature("holds", holds), {"texts": ["2"], "names": {1: "2"}, "cells": [[1, 2]]}
+    )
+    assert not found
+    assert (values["texts"], values["names"], values["cells"]) == (["2"], {1: "2"}, [(1, 2)])

@@ -98,15 +98,46 @@ def test_ctrl_c_keeps_what_was_recorded(
 
 
 @pytest.mark.slow
-def test_a_pad_that_falls_silent_ends_in_an_error_and_keeps_what_came(
+def test_a_pad_that_is_given_up_ends_the_recording_of_what_came(
     tmp_path: Path, pad: FakePad, sends
 ) -> None:
     _, data = encoded(5)
     sends(data)
     result = run(pad, tmp_path / "a.zarr", "--give-up", "0.5")
+    assert result.exit_code == 0
+    assert "a.zarr: 5 frames" in result.stdout
+    assert "given up: " in result.stderr
+    assert "no frame for 0.5 s" in result.stderr
+    result = run(pad, tmp_path / "a.zarr", "--give-up", "0.5", "--append")
     assert result.exit_code == 2
-    assert "a.zarr: 5 frames" in result.output
-    assert "no frame for 0.5 s" in result.output
+    assert "no frame for 0.5 s" in result.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("more", [(), ("--append",)], ids=["new", "append"])
+def test_what_sends_no_frame_is_not_done(
+    tmp_path: Path, pad: FakePad, sends, more: tuple[str, ...]
+) -> None:
+    target = tmp_path / "a.zarr"
+    if more:
+        sends(encoded(5)[1])
+        assert run(pad, target, "--frames", 5).exit_code == 0
+    sends(np.random.default_rng(1).bytes(3000))
+    result = run(pad, target, "--seconds", 0.5, *more)
+    assert result.exit_code == 2
+    assert "no frame came, and nothing was written" in result.stderr
+
+
+def test_ctrl_c_before_a_frame_is_not_done(
+    tmp_path: Path, pad: FakePad, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tactile_graph_sources.commands.record._keep", interrupted)
+    result = run(pad, tmp_path / "a.zarr")
+    assert result.exit_code == 2
+    assert "no frame came, and nothing was written" in result.stderr
 
 
 def test_a_recording_that_is_there_is_not_overwritten(tmp_path: Path, pad: FakePad) -> None:
@@ -218,6 +249,6 @@ def test_a_silent_pad_ends_in_time_and_is_told(tmp_path: Path, pad: FakePad) -> 
     began = time.monotonic()
     result = run(pad, tmp_path / "a.zarr", "--seconds", "0.5")
     assert time.monotonic() - began < 5.0
-    assert result.exit_code == 0
+    assert result.exit_code == 2
     assert "no frame came, and nothing was written" in result.output
     assert not (tmp_path / "a.zarr").exists()

@@ -18,9 +18,10 @@ import pytest
 from click.testing import CliRunner
 
 from helpers_cli import call, install
-from tactile_graph import Image
+from tactile_graph import Image, provenance
 from tactile_graph.cli import cli
 from tactile_graph.cli.endings import words
+from tactile_graph.files import said
 
 pytestmark = pytest.mark.usefixtures("hand_made")
 
@@ -44,10 +45,62 @@ def test_a_full_disc_ends_a_run_with_whole_lines_and_says_how_many(tmp_path: Pat
     assert got.exit_code == 2
     assert all(line.endswith("\n") and json.loads(line) for line in lines)
     n = len(lines)
-    kept = f"the first {n} frames are in it"
+    kept = f"the first {n} frames are in it, and no part of another"
     assert f"error: out.jsonl: cannot be written: File too large; {kept}\n" in got.stderr
     assert "wrote" not in got.stderr
     assert "the source ended" not in got.stderr
+    note = json.loads((tmp_path / "out.jsonl.meta.json").read_text())
+    assert (note["complete"], note["result"]["frames"]) == (False, n)
+
+
+def test_a_note_that_has_no_room_either_hides_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    n_written = 0
+    write = provenance.write_whole
+
+    def full(name: Path, content: str) -> None:
+        nonlocal n_written
+        n_written += 1
+        with said(name):
+            if n_written > 1:
+                raise OSError(errno.ENOSPC, "No space left on device")
+        write(name, content)
+
+    monkeypatch.setattr(provenance, "write_whole", full)
+    with full_at(4096):
+        got = call("run", "discs", "--frames", 100, "-o", "out.jsonl")
+    n = (tmp_path / "out.jsonl").read_text().count("\n")
+    note = "out.jsonl.meta.json: cannot be written: No space left on device"
+    assert got.exit_code == 2
+    assert f"error: out.jsonl: cannot be written: File too large; the first {n} " in got.stderr
+    assert f"{note}: what it says is of the first frame\n" in got.stderr
+    assert f"{n} frames in " in got.stderr
+    n_written = 0
+    got = call("run", "discs", "-o", "out.jsonl")
+    assert got.exit_code == 2
+    assert "wrote out.jsonl\n" in got.stderr
+    assert got.stderr.endswith(f"error: {note}\n")
+
+
+@pytest.mark.parametrize(("name", "library"), [("out.parquet", "pyarrow"), ("out.zarr", "zarr")])
+def test_what_stands_only_when_it_is_whole_leaves_no_note_of_what_is_not_there(
+    tmp_path: Path, name: str, library: str
+) -> None:
+    pytest.importorskip(library)
+    only = () if library == "pyarrow" else ("--only", "footprint")
+    before = set(os.listdir(tmp_path))
+    with full_at(100):
+        got = call("run", "discs", "--frames", 100, "-o", name, *only)
+    assert got.exit_code == 2
+    assert f"{name}: cannot be written: File too large; nothing of it is kept\n" in got.stderr
+    assert set(os.listdir(tmp_path)) == before
+    assert call("run", "discs", "-o", name, *only).exit_code == 0
+    note = (tmp_path / f"{name}.meta.json").read_text()
+    with full_at(100):
+        got = call("run", "discs", "--frames", 100, "-o", name, *only)
+    assert "File too large; the older one stays\n" in got.stderr
+    assert (tmp_path / f"{name}.meta.json").read_text() == note
 
 
 @pytest.mark.parametrize(

@@ -142,6 +142,14 @@ def test_what_cannot_be_sent_is_told() -> None:
         ("use: other, time_limit_s: 1", "'time_limit_s' belongs to a node that has a 'step'"),
         ("step: moody, in: frame, time_limit_s: 0", "'time_limit_s' must be a number above 0, got"),
         ("step: moody, in: frame, time_limit_s: soon", "must be a number above 0, got a text"),
+        (
+            "step: moody, in: frame, time_limit_s: 2e4",
+            r"'2e4'; as a number YAML takes 20000 or 2.0e\+4",
+        ),
+        (
+            "step: moody, in: frame, time_limit_s: '.5'",
+            "'.5'; as a number YAML takes 0.5 or 5.0e-1",
+        ),
         ("step: moody, in: frame, isolated: 2", "'isolated' must be true or false, got 2"),
     ],
 )
