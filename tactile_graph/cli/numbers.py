@@ -16,6 +16,8 @@ class Finite(click.FloatRange):
     min, max : float, optional
     min_open, max_open : bool
         Whether the end itself is left out.
+    clamp : bool
+        Whether a number beyond an end is taken for that end.
     """
 
     name = "float"
