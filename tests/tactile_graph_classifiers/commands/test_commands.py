@@ -77,6 +77,7 @@ def test_objects_are_learned_listed_described_and_forgotten(recordings):
     assert answer("objects") == (0, "tactile-objects.sqlite: no objects\n")
 
 
+@pytest.mark.slow
 def test_learning_the_same_frames_twice_is_told(recordings):
     assert "count twice" not in call("learn", "small", recordings["small"], "--frames", 4)[1]
     code, answered, told = run("learn", "small", recordings["small"], "--frames", "2:7")

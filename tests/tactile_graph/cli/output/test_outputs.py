@@ -83,6 +83,7 @@ def test_a_note_that_has_no_room_either_hides_nothing(
     assert got.stderr.endswith(f"error: {note}\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "library"), [("out.parquet", "pyarrow"), ("out.zarr", "zarr")])
 def test_what_stands_only_when_it_is_whole_leaves_no_note_of_what_is_not_there(
     tmp_path: Path, name: str, library: str
