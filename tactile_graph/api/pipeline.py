@@ -144,7 +144,7 @@ class Pipeline(Graph):
         from tactile_graph.api.results import Results
 
         runner = self.runner(only, seed)
-        asked = _asked(only) or tuple(self.outputs)
+        asked = tuple(runner.plan.asked)
         given = self.frames(seed) if frames is None else frames
         return Results(self, asked, self.results(given, runner))
 
@@ -240,7 +240,7 @@ class Pipeline(Graph):
         from tactile_graph.engine.runner import Runner, RunSettings
 
         settings = RunSettings(seed, verify, decider, after)
-        return Runner(self, _asked(only) or tuple(self.outputs), Result, settings)
+        return Runner(self, _asked(only), Result, settings)
 
     def _runner(self, only: tuple[str, ...], seed: int) -> Runner[Result]:
         """Return a fresh runner, or the last one where no step keeps state."""

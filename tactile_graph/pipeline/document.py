@@ -70,10 +70,6 @@ class Document:
         """Note a problem at ``path``."""
         self.problem_at(self.mark(*path, key=key), message)
 
-    def problem_elsewhere(self, message: str, *path: str | int) -> None:
-        """Note a problem of what was put in place of what stands at ``path``."""
-        self.problem_at(None, message)
-
     def problem_at(self, mark: Mark | None, message: str) -> None:
         """Note a problem at ``mark``, or nowhere in the file.
 

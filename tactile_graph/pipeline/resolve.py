@@ -109,8 +109,12 @@ def _source(scope: Scope, replaced: SourceOverride) -> Source | None:
         step, given = replaced
     if step is None:
         return None
-    # Where another source was put in, the file says nothing of it.
-    tell = scope.document.problem if replaced is None else scope.document.problem_elsewhere
+
+    def tell(message: str, *path: str | int) -> None:
+        # Where another source was put in, the file says nothing of it.
+        at = scope.document.mark(*path) if replaced is None else None
+        scope.document.problem_at(at, message)
+
     try:
         signature = scope.registry.step(step, scope.document.file)
     except (UsageError, PluginError) as error:

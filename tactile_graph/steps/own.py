@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -43,22 +43,21 @@ def _is_open(value: Any) -> bool:
     return any(own(field) is not field for field in its)
 
 
-def bound(target: Callable[..., Any], settings: Mapping[str, Any]) -> Callable[..., Any]:
+def bound(target: Callable[..., Any], settings: dict[str, Any]) -> Callable[..., Any]:
     """Return a function with its settings filled in, anew for each call where it could change them.
 
     Parameters
     ----------
     target : callable
-    settings : mapping
-        Left as they are.
+    settings : dict
+        Nobody else's.
     """
     if not settings:
         return target
-    given = {name: own(value) for name, value in settings.items()}
-    if all(given[name] is value for name, value in settings.items()):
-        return partial(target, **given)
+    if all(own(value) is value for value in settings.values()):
+        return partial(target, **settings)
 
     def call(*args: Any, **kwargs: Any) -> Any:
-        return target(*args, **own(given), **kwargs)
+        return target(*args, **own(settings), **kwargs)
 
     return call

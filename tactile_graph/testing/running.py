@@ -89,7 +89,6 @@ def run_pipeline(
         Whatever a node failed with.
     """
     from tactile_graph.api.pipeline import load, loads
-    from tactile_graph.wires import Frame
 
     text = str(pipeline)
     is_text = "\n" in text or "{" in text
@@ -98,9 +97,7 @@ def run_pipeline(
         made = made.with_settings(settings)
     runner = made.runner(seed=seed, verify=True)
     results = []
-    for index, frame in enumerate(frames or made.frames(seed)):
-        result = runner(frame if isinstance(frame, Frame) else Frame.of(frame, index=index))
-        made.promises.check(result)
+    for result in made.results(frames or made.frames(seed), runner):
         for failed in result.failures:
             raise failed.error
         results.append(result)

@@ -12,7 +12,7 @@ from tactile_graph.cli.arguments import Span, open_pipeline, parse_span, source_
 from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.many.options import place_for, workers_options
 from tactile_graph.cli.say import say
-from tactile_graph.errors import DataError, UsageError
+from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option, tell_apart
 from tactile_graph_classifiers.measuring.shapes import SHAPES
 
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from tactile_graph.many import Place
     from tactile_graph.pipeline.wiring import Ref
     from tactile_graph.steps.injected import Report
-    from tactile_graph_classifiers.database.rows import Lesson
-    from tactile_graph_classifiers.database.store import ObjectDatabase
     from tactile_graph_classifiers.measuring.reader import Given, Readings
 
 
@@ -89,8 +87,8 @@ def learn(
     store = ObjectDatabase(database, timeout_s)
     plain_name = " ".join(name.split())
     presses = {plain_name: read.presses} if keep_presses else None
-    twice = _learned_already(store, lesson, plain_name)
-    store.learn(Setting(first.names, first.quantity, opened.name), [lesson], presses=presses)
+    setting = Setting(first.names, first.quantity, opened.name)
+    twice = store.learn(setting, [lesson], presses=presses)
     total = next(s for s in store.summaries() if s.name == plain_name)
     say(
         f"{database}: {total.name}{f' ({total.shape})' if total.shape else ''}: "
@@ -110,22 +108,6 @@ def learn(
         say(line, err=True)
     if read.n_failed:
         click.get_current_context().exit(SOME_FAILED)
-
-
-def _learned_already(store: ObjectDatabase, lesson: Lesson, name: str) -> int:
-    """Return how many readings an object has already, of the same source and to the last digit."""
-    try:
-        objects = store.known().objects if store.path.is_file() else ()
-    except DataError:  # who learns finds it too, and says what is wrong
-        return 0
-    there = {
-        (source, *values)
-        for known in objects
-        if known.name == name
-        for source, values in zip(known.sources, known.readings.tolist(), strict=True)
-    }
-    given = zip(lesson.sources, lesson.readings, strict=True)
-    return sum((source, *values) in there for source, values in given)
 
 
 def _read(

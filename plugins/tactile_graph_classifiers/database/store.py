@@ -11,7 +11,7 @@ import numpy as np
 from tactile_graph.errors import DataError, UsageError, did_you_mean, one_of
 from tactile_graph_classifiers.database.choice import Choice
 from tactile_graph_classifiers.database.connection import reading, writing
-from tactile_graph_classifiers.database.known import Known
+from tactile_graph_classifiers.database.known import Known, KnownObject
 from tactile_graph_classifiers.database.relief_rows import (
     Kept,
     Press,
@@ -64,7 +64,7 @@ class ObjectDatabase:
         lessons: Iterable[Lesson],
         new: bool = False,
         presses: Mapping[str, Sequence[Press]] | None = None,
-    ) -> None:
+    ) -> int:
         """Add readings to objects, all of them or none.
 
         Parameters
@@ -75,6 +75,11 @@ class ObjectDatabase:
             Whether none of the objects may be there already.
         presses : mapping, optional
             By a lesson's name the images of its readings, to learn reliefs of.
+
+        Returns
+        -------
+        int
+            How many of them were there before, of the same source and to the last digit.
 
         Raises
         ------
@@ -94,11 +99,13 @@ class ObjectDatabase:
             if there.setting.features:
                 setting = there.setting
             settle(connection, setting, None)  # features first: values refer to them
+            n_again = sum(_again(lesson, objects.get(lesson.name)) for lesson in checked)
             for lesson in checked:
                 objects[lesson.name] = add(connection, lesson, objects.get(lesson.name))
                 if presses:
                     add_presses(connection, lesson.name, presses[lesson.name])
             settle(connection, setting, None)
+        return n_again
 
     def keep(self, choice: Choice, of: Known) -> None:
         """Keep how the objects are told apart best, unless they have changed since.
@@ -237,6 +244,15 @@ class ObjectDatabase:
     def _known(self, found: Contents) -> Known:
         setting, objects = found.setting, tuple(it.known for it in found.objects)
         return Known(str(self.path), *setting[:2], objects, setting.pipeline, found.choice)
+
+
+def _again(lesson: Lesson, old: KnownObject | None) -> int:
+    """Return how many readings of a lesson an object has already, of the same source."""
+    if old is None:
+        return 0
+    there = {(of, *values) for of, values in zip(old.sources, old.readings.tolist(), strict=True)}
+    given = zip(lesson.sources, lesson.readings, strict=True)
+    return sum((source, *values) in there for source, values in given)
 
 
 def _checked(lesson: Lesson, setting: Setting) -> Lesson:

@@ -438,8 +438,8 @@ class AnyPad:
         shared = variance_inflation(top.fit.neighbours, readings.touched)
         large = readings.states.size > LARGE_PAD
         strays = strays_beyond(self.told, readings, point)
-        contrast = 1.0
-        if part == EVEN and not large:
+        contrast, by_law = 1.0, part == EVEN and not large
+        if by_law:
             contrast = contrast_of(self.told.noise, float(point[-2]), readings, self.law)
         noise = learned(self.told.noise, point[-2:], readings.touched, strays, contrast)
         noise = changed(noise, sigma=noise.sigma * math.sqrt(shared))
@@ -450,14 +450,14 @@ class AnyPad:
             )
         # Of few elements a point costs little, and the posterior is far from normal.
         precision = self.told.precision / (1.0 + FINER * fewness(readings))
-        if part == EVEN and not large:
+        estimated = "contrast" if by_law else part
+        model = self._with(noise, *([] if estimated == EVEN else [estimated]))
+        model = changed(model, precision=precision)
+        if by_law:
             begin = np.append(point[: self._count], noise.contrast)
-            model = changed(self._with(noise, "contrast"), precision=precision)
             if is_scattered(self.told.kind, readings, point):
                 model = changed(model, most_points=FEW_POINTS)
             return model.posterior_near(readings, begin, loose)
-        model = self._with(noise, *([] if part == EVEN else [part]))
-        model = changed(model, precision=precision)
         mode = _first(top, self._count + len(PRESSURES[part]))
         return model.posterior_around(readings, mode, loose)
 
