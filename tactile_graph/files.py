@@ -16,6 +16,7 @@ from types import FrameType
 from typing import Any, BinaryIO
 
 from tactile_graph.errors import UsageError
+from tactile_graph.part_files import part_of
 
 Name = str | os.PathLike[str]
 _ERRNO = re.compile(r"\berrno\W+(\d+)", re.I)
@@ -46,7 +47,7 @@ def whole_file(name: Name, by: str = "") -> Iterator[BinaryIO]:
                 yield file
             return
         target = Path(os.path.realpath(name))
-        part = target.with_name(f".{target.name}.{by or os.getpid()}.part")
+        part = target.with_name(f".{target.name}.{by}.part") if by else part_of(target)
         try:
             with part.open("wb") as file:
                 yield file

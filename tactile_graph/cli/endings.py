@@ -44,7 +44,11 @@ def ending(run: Callable[[], Any], debug: bool) -> int:
         stop_writing()
         return PIPE_CLOSED
     except (click.Abort, KeyboardInterrupt) as error:
-        return _interrupted((error.__cause__ if isinstance(error, click.Abort) else None) or error)
+        cause = (error.__cause__ if isinstance(error, click.Abort) else None) or error
+        if isinstance(cause, EOFError):  # click takes it for Ctrl-D; nothing here asks anything
+            show(cause, debug)
+            return NOT_DONE
+        return _interrupted(cause)
     except SystemExit as error:
         if _of_click(error):
             raise

@@ -35,6 +35,7 @@ from tactile_graph.draw.strip_columns import Column
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, outcome_word
 from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.files import said
+from tactile_graph.part_files import part_of
 from tactile_graph.wires import Frame
 
 if TYPE_CHECKING:
@@ -192,7 +193,7 @@ def _plain(record: Record) -> Record:
 def _part(path: Path) -> Iterator[Path]:
     """Give a name beside the file, which gets its own at the end; nothing is left otherwise."""
     target = Path(os.path.realpath(path))
-    part = target.with_name(f".{target.name}.{os.getpid()}.part")
+    part = part_of(target)
     with said(path):
         try:
             yield part

@@ -10,7 +10,6 @@ had one has no ``values``. Quantity, unit, pitch and place are attributes of ``v
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -25,6 +24,7 @@ from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed
 from tactile_graph.errors import UsageError, one_of
 from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import check_target, left_of, said, uninterrupted
+from tactile_graph.part_files import part_of, remove
 from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.wiring import arms
 from tactile_graph.quantities import unit_of
@@ -111,7 +111,7 @@ class ImageStore:
         self.broken = False
         """Whether frames could not be written; then nothing is left."""
         target = Path(os.path.realpath(output))
-        self._part = target.with_name(f".{target.name}.{os.getpid()}.part")
+        self._part = part_of(target)
         self._target = target
         with self._whole():
             made = Hdf5 if form == "hdf5" else Zarr
@@ -166,10 +166,7 @@ class ImageStore:
                 yield
         except BaseException:
             self.broken = True
-            if self._part.is_dir():
-                shutil.rmtree(self._part, ignore_errors=True)
-            else:
-                self._part.unlink(missing_ok=True)
+            remove(self._part)
             raise
 
 

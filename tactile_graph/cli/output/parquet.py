@@ -18,6 +18,7 @@ from tactile_graph.engine.tables.table import Table, units_of
 from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer, check_plain
 from tactile_graph.files import left_of, said, uninterrupted
+from tactile_graph.part_files import part_of
 
 ROWS_A_GROUP = 10_000
 FRAME = "frame"
@@ -62,7 +63,7 @@ class ParquetFile:
         self.broken = False
         """Whether rows could not be written; then nothing is left."""
         self._target = Path(os.path.realpath(output))
-        self._part = self._target.with_name(f".{self._target.name}.{os.getpid()}.part")
+        self._part = part_of(self._target)
         self._table = table
         self._cells: dict[str, list[Any]] = {column.key: [] for column in table.columns}
         self._n_rows = 0

@@ -295,6 +295,20 @@ def test_mistakes_with_graphs(args, message):
     assert message in got.stderr
 
 
+@pytest.mark.usefixtures("hand_made")
+def test_a_file_that_ends_too_early_is_no_ctrl_d(monkeypatch):
+    """What click takes for one, as a truncated file of a plugin, is an error by its name."""
+
+    def cut(*_: object) -> None:
+        raise EOFError("marshal data too short")
+
+    monkeypatch.setattr("tactile_graph.cli.commands.graph.on_screen", cut)
+    got = call("graph", "discs", "--format", "png")
+    assert got.exit_code == 2
+    assert "error: EOFError: marshal data too short\n" in got.stderr
+    assert "interrupted" not in got.stderr
+
+
 # -- explain -------------------------------------------------------------------------------------
 
 

@@ -28,14 +28,20 @@ pytestmark = pytest.mark.usefixtures("hand_made")
 
 @contextmanager
 def full_at(n_bytes: int) -> Iterator[None]:
-    """Let no file be larger, as if the disc were full then."""
+    """Let no file be larger, as if the disc were full then.
+
+    Python would cut short what it keeps of a module imported meanwhile, without a word.
+    """
     gc.collect()  # files that other tests left open are closed while there is room
+    writes = sys.dont_write_bytecode
+    sys.dont_write_bytecode = True
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (n_bytes, before[1]))
     try:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        sys.dont_write_bytecode = writes
 
 
 def test_a_full_disc_ends_a_run_with_whole_lines_and_says_how_many(tmp_path: Path) -> None:
