@@ -1,6 +1,7 @@
 """Ellipses by geometric and by direct least squares, and the nearest point they need."""
 
 import math
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -14,6 +15,18 @@ from tactile_graph_fitters.ellipse.fit_ellipse import equations, fit_ellipse, se
 from tactile_graph_fitters.ellipse.fit_ellipse_direct import fit_ellipse_direct
 from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse
 from tactile_graph_fitters.ellipse.nearest_on_ellipse import distances, nearest
+
+EIG = np.linalg.eig
+
+
+def skimage_ellipse(xy):
+    """Return scikit-image's model of points; its 0.26 needs an `eig` that gives real numbers where
+    all are, as NumPy's did before 2.5."""
+    from skimage.measure import EllipseModel
+
+    with mock.patch.object(np.linalg, "eig", lambda a: map(np.real_if_close, EIG(a))):
+        return EllipseModel.from_estimate(xy)
+
 
 BOTH = [fit_ellipse, fit_ellipse_direct]
 
@@ -66,11 +79,9 @@ def test_order_of_the_points_does_not_matter(fit, seed):
 
 def test_the_direct_fit_is_scikit_images_on_the_same_points():
     """Both minimise the same; scikit-image's EllipseModel is Halíř and Flusser's too."""
-    from skimage.measure import EllipseModel
-
     for seed in range(10):
         _, _, xy = noisy(seed, 1e-4)
-        peer = EllipseModel.from_estimate(xy)
+        peer = skimage_ellipse(xy)
         got = fit_ellipse_direct(Points(xy.copy()))
         assert (got.x_cm, got.y_cm) == pytest.approx(tuple(peer.center), abs=2e-4)
         axes = sorted(peer.axis_lengths, reverse=True)
@@ -79,12 +90,10 @@ def test_the_direct_fit_is_scikit_images_on_the_same_points():
 
 @pytest.mark.slow
 def test_the_geometric_fit_has_the_least_distances():
-    from skimage.measure import EllipseModel
-
     for seed in range(10):
         _, _, xy = noisy(seed, 0.3)
         best, direct = fit_ellipse(Points(xy.copy())), fit_ellipse_direct(Points(xy.copy()))
-        peer = EllipseModel.from_estimate(xy).residuals(xy)
+        peer = skimage_ellipse(xy).residuals(xy)
         assert best.rms_cm <= direct.rms_cm
         assert best.rms_cm <= math.sqrt(np.mean(peer**2)) * (1 + 1e-9)
         for k in range(4):
