@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -50,3 +52,24 @@ def spread(values: NDArray[np.float64]) -> float:
 def hashed(text: str) -> int:
     """Return the hash of a text, which is salted anew for each process."""
     return hash(text)
+
+
+class Inner(NamedTuple):
+    """A number and an array."""
+
+    number: float
+    values: NDArray[np.float64]
+
+
+class Outer(NamedTuple):
+    """Two of them, and a count."""
+
+    left: Inner
+    right: Inner
+    n: int
+
+
+@compiled_as_is
+def nested(x: float) -> Outer:
+    """Return named tuples in one, with arrays."""
+    return Outer(Inner(x, np.full(2, x)), Inner(2.0 * x, np.full((1, 3), 2.0 * x)), 3)

@@ -18,6 +18,7 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.runtime import rtsys
 
+from tactile_graph.compiled.given_back import given_back_by_c
 from tactile_graph.compiled.looked_at import arrays_looked_at
 from tactile_graph.compiled.numbas_own import made_parts
 from tactile_graph.compiled.preparing import preparing
@@ -27,7 +28,7 @@ from tactile_graph.locks import Lock
 OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True}
 """Machine code lets other threads of Python run: the one that reads a pad must not wait for it."""
 
-MADE = "arrays looked at"
+MADE = "arrays looked at, given back by C"
 """How entries are made, beside numba's version: machine code made otherwise is made anew."""
 POLL_S = 0.02
 """Between two looks whether another process has finished."""
@@ -53,7 +54,7 @@ def _under_way() -> Iterator[None]:
     gc.disable()
     _entries += 1
     try:
-        with made_parts(into_part, offered), arrays_looked_at():
+        with made_parts(into_part, offered), arrays_looked_at(), given_back_by_c():
             yield
     finally:
         _entries -= 1
