@@ -13,10 +13,11 @@ from contextlib import contextmanager
 from typing import Any
 
 from llvmlite import ir
-from numba import types
 from numba.core import cgutils
 from numba.core.boxing import box_tuple
 from numba.core.pythonapi import _boxers
+from numba.core.types import Array
+from numba.core.types.containers import NamedTuple, NamedUniTuple
 from numba.np.numpy_support import as_dtype
 
 
@@ -60,8 +61,8 @@ def _kept(thing: Any, c: Any) -> Any:
 
 
 _NEW = tuple.__new__
-_MADE = {
-    types.NamedTuple: _named_tuple,
-    types.NamedUniTuple: _named_tuple,
-    types.Array: _array,
+_MADE: dict[Any, Any] = {
+    NamedTuple: _named_tuple,
+    NamedUniTuple: _named_tuple,
+    Array: _array,
 }
