@@ -95,6 +95,14 @@ def test_the_skip_of_a_pad_that_stays_empty_is_made_once(monkeypatch: pytest.Mon
     assert skips[2] is skips[3]
 
 
+def test_a_run_that_needs_no_node_is_written_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(program, "AFTER_FRAMES", 1)
+    monkeypatch.setattr(program, "CHAINS_AFTER_FRAMES", 2)
+    runner = load("circle-3").runner(["frame"])
+    for one in discs(4):
+        assert runner(one).outcome("frame") is one
+
+
 def test_a_field_may_be_named_by_a_word_of_python(monkeypatch: pytest.MonkeyPatch) -> None:
     class Worded:
         def __init__(self, number: int) -> None:
