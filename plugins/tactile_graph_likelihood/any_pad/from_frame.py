@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
+from tactile_graph.compiled import compiled_later
 from tactile_graph_likelihood.any_pad.turn_on import (
     contrast_by,
     edge_of,
@@ -14,7 +13,7 @@ from tactile_graph_likelihood.any_pad.turn_on import (
 )
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
 from tactile_graph_likelihood.single.changed import changed
-from tactile_graph_likelihood.single.element_terms import ON, OVER
+from tactile_graph_likelihood.single.element_terms import ON, OVER, States
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.readings import Readings
@@ -53,8 +52,9 @@ LEAST_ALIKE, MOST_ALIKE = 0.03, 0.95
 
 
 def learned(
-    told: Noise, scatter: Values, touched: int, strays: float, contrast: float = 1.0
-) -> Noise:
+    told: Noise, scatter: Values, touched: int, strays: float, contrast: float = 1.0,
+    shared: float = 1.0,
+) -> Noise:  # fmt: skip
     """Return the noise that a fit has found.
 
     Parameters
@@ -65,8 +65,10 @@ def learned(
     touched : int
         Readings that show.
     strays, contrast : float
+    shared : float
+        By how many times less elements are worth, as neighbours share their gains.
     """
-    sigma = _freed(float(scatter[0]), touched)
+    sigma = _freed(float(scatter[0]), touched) * math.sqrt(shared)
     voids = 1.0 / (1.0 + math.exp(-scatter[1]))
     return changed(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
 
@@ -126,15 +128,26 @@ def _freed(log_sigma: float, touched: int) -> float:
 
 def strays_beyond(model: Model, readings: Readings, p: Values) -> float:
     """Return the share of strays, by what reads beyond the box around an outline."""
-    x, y = p[:2].tolist()
-    left, top, pitch, side, *_ = readings.grid.tolist()
-    wide, high = half_extents(model.kind, p)
-    rows, columns = lines(y - top, high, pitch, side), lines(x - left, wide, pitch, side)
-    inside = readings.states[rows, columns]
-    beyond = readings.touched - int(np.count_nonzero((inside == ON) | (inside == OVER)))
-    bare = readings.states.size - inside.size
+    inside, shows = within.call(readings.states, readings.grid, p, *half_extents(model.kind, p))
+    beyond, bare = readings.touched - shows, readings.states.size - inside
     found = (beyond + TOLD_STRAYS * model.noise.strays) / (bare + TOLD_STRAYS)
     return min(found, MOST_STRAYS)
+
+
+@compiled_later
+def within(states: States, grid: Values, p: Values, wide: float, high: float) -> tuple[int, int]:
+    """Return how many elements a box around a point touches, and how many of them show."""
+    rows, columns = states.shape
+    x, y, pitch, side = p[0] - grid[0], p[1] - grid[1], grid[2], grid[3]
+    r0 = max(math.ceil((y - high - side) / pitch), 0)
+    r1 = min(max(math.floor((y + high) / pitch) + 1, 0), rows)
+    c0 = max(math.ceil((x - wide - side) / pitch), 0)
+    c1 = min(max(math.floor((x + wide) / pitch) + 1, 0), columns)
+    shows = 0
+    for i in range(r0, r1):
+        for j in range(c0, c1):
+            shows += 1 if states[i, j] == ON or states[i, j] == OVER else 0
+    return max(r1 - r0, 0) * max(c1 - c0, 0), shows
 
 
 def is_partly_hidden(kind: int, readings: Readings, p: Values) -> bool:

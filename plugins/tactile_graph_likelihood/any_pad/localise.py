@@ -287,9 +287,9 @@ class AnyPad:
         if not large:
             even = beyond_the_edge(its._fit(EVEN), readings, even)
         found = {EVEN: even}
-        hidden = self._reaches_beyond(readings, even)
-        least = CLEAR if self.quick else self._faint
-        for part in [] if large else asked_by([even.fit], FIRST, least):
+        asked = [] if large else asked_by([even.fit], FIRST, CLEAR if self.quick else self._faint)
+        hidden = bool(asked) and self._reaches_beyond(readings, even)
+        for part in asked:
             if hidden and part != FOAM:
                 continue
             top = its._pressed(part, readings, even)
@@ -413,8 +413,7 @@ class AnyPad:
         taken whose points are worth fewer than there are unknowns, as where strays explain all
         there is, unless it promises less than a normal distribution around the top.
         """
-        hidden = self._reaches_beyond(readings, top)
-        if self.quick and not hidden:
+        if self.quick and not self._reaches_beyond(readings, top):
             normal = self._normal(part, readings, top)
             if self.told.kind != DISC or normal.centre_std_cm <= self.sampled_above_cm:
                 return normal
@@ -441,8 +440,7 @@ class AnyPad:
         contrast, by_law = 1.0, part == EVEN and not large
         if by_law:
             contrast = contrast_of(self.told.noise, float(point[-2]), readings, self.law)
-        noise = learned(self.told.noise, point[-2:], readings.touched, strays, contrast)
-        noise = changed(noise, sigma=noise.sigma * math.sqrt(shared))
+        noise = learned(self.told.noise, point[-2:], readings.touched, strays, contrast, shared)
         loose = looseness(readings)
         if part == EVEN and self.quick and self.told.kind == DISC:
             return self._with(noise, "contrast").posterior_around(
@@ -451,10 +449,11 @@ class AnyPad:
         # Of few elements a point costs little, and the posterior is far from normal.
         precision = self.told.precision / (1.0 + FINER * fewness(readings))
         estimated = "contrast" if by_law else part
-        model = self._with(noise, *([] if estimated == EVEN else [estimated]))
-        model = changed(model, precision=precision)
+        noise = changed(noise, estimated=() if estimated == EVEN else (estimated,))
+        model = changed(self.told, noise=noise, precision=precision)
         if by_law:
-            begin = np.append(point[: self._count], noise.contrast)
+            begin = point[: self._count + 1].copy()
+            begin[-1] = noise.contrast
             if is_scattered(self.told.kind, readings, point):
                 model = changed(model, most_points=FEW_POINTS)
             return model.posterior_near(readings, begin, loose)

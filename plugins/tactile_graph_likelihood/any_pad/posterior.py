@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 
-import numpy as np
-
 from tactile_graph_likelihood.geometry.outlines import DISC, Values, sizes
 from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -119,7 +117,7 @@ def resized(found: AnyPadPosterior, share: float) -> AnyPadPosterior:
     """Return a posterior whose sizes may all be larger, or smaller, by a share of them."""
     lengths = slice(2, 2 + sizes.call(found.kind))
     off, covariance = share * found.mean[lengths], found.covariance.copy()
-    covariance[lengths, lengths] += np.outer(off, off)
+    covariance[lengths, lengths] += off[:, None] * off
     return changed(found, covariance=covariance)
 
 

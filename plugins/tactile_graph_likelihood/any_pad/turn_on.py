@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tactile_graph.compiled import compiled_later
+from tactile_graph.compiled import compiled_as_is, compiled_later
 from tactile_graph_likelihood.any_pad.shown import GAPS, SPACED
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import ON, States
@@ -63,8 +63,7 @@ def unbent(readings: Readings) -> tuple[Readings, float] | None:
         return None
     if readings.least_log is not None and readings.least_log >= turn_on.log_load:
         return None
-    low = readings.logs[readings.states == ON] - turn_on.log_load
-    low = low[low < 0.0]
+    low = lows.call(readings.logs, readings.states, turn_on.log_load)
     if len(low) < FEW:
         return None
     return straightened(readings, 1.0), float(np.log1p(-2.0 * turn_on.bend * low).sum())
@@ -77,23 +76,48 @@ def straightened(readings: Readings, share: float) -> Readings:
         return readings
     first, left = turn_on.log_load, (1.0 - share) * turn_on.bend
     taken = turn_on.bend / turn_on.chance - turn_on.bend
-    more = share * turn_on.bend
-
-    def straight(logs: Values) -> Values:
-        low = np.minimum(logs - first, 0.0)
-        told = low if taken <= 0.0 else (1.0 - np.sqrt(1.0 - 4.0 * taken * low)) / (2.0 * taken)
-        return logs - more * told**2
-
-    least_log = readings.least_log
+    by, least_log = (first, taken, share * turn_on.bend), readings.least_log
     return readings._replace(
-        logs=straight(readings.logs),
-        least_log=None if least_log is None else float(straight(np.array(least_log))),
+        logs=straight_logs.call(readings.logs, *by),
+        least_log=None if least_log is None else straight.call(least_log, *by),
         turn_on=turn_on._replace(
             bend=left,
-            hidden=float(straight(np.array(turn_on.hidden))),
+            hidden=straight.call(turn_on.hidden, *by),
             chance=turn_on.chance * (1.0 - share),
         ),
     )
+
+
+@compiled_as_is
+def straight(log: float, first: float, taken: float, more: float) -> float:
+    """Return the logarithm of a load less ``more`` times its squared distance below ``first``.
+
+    The distance is as told: before a bend of ``taken`` was taken off.
+    """
+    low = min(log - first, 0.0)
+    told = low if taken <= 0.0 else (1.0 - math.sqrt(1.0 - 4.0 * taken * low)) / (2.0 * taken)
+    return log - more * (told * told)
+
+
+@compiled_as_is
+def straight_logs(logs: Values, first: float, taken: float, more: float) -> Values:
+    """Return `straight` of each of some logarithms, shape (rows, columns)."""
+    out = np.empty(logs.shape)
+    for i in range(logs.shape[0]):
+        for j in range(logs.shape[1]):
+            out[i, j] = straight(logs[i, j], first, taken, more)
+    return out
+
+
+@compiled_later
+def lows(logs: Values, states: States, first: float) -> Values:
+    """Return how far below ``first`` those readings lie that do, shape (N,), in order."""
+    found, n = np.empty(logs.size), 0
+    for i in range(logs.shape[0]):
+        for j in range(logs.shape[1]):
+            found[n] = logs[i, j] - first
+            n += 1 if states[i, j] == ON and found[n] < 0.0 else 0
+    return found[:n]
 
 
 def chance_of_a_bend(gain: float) -> float:

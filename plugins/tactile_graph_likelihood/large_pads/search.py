@@ -19,11 +19,16 @@ from tactile_graph_likelihood.large_pads.covered_whole import (
 from tactile_graph_likelihood.large_pads.rim import drawn_as, runs_of
 from tactile_graph_likelihood.single.element_terms import FOAM, ON, UNKNOWN, VOIDS
 from tactile_graph_likelihood.single.evaluate import log_likelihood_at
-from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
+from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
 from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
 from tactile_graph_likelihood.single.problem import Problem, turned_as
-from tactile_graph_likelihood.single.search import TRIES, likeliest_start, outline_of_moments
+from tactile_graph_likelihood.single.search import (
+    TRIES,
+    likeliest_start,
+    looked_at,
+    outline_of_moments,
+)
 
 STRIDE = 1.5  # pitches that an edge moves a round: rows it never felt lie beyond
 SETTLED = 0.005  # gain in log posterior still promised, at which a top is taken for the mean
@@ -137,7 +142,7 @@ def _start(
 def attempted_on_large_pad(
     problem: Problem, table: Values, start: Values, attempt: int, least: float, p: Values,
     root: Values,
-) -> tuple[float, GoodnessOfFit]:  # fmt: skip
+) -> tuple[float, float, GoodnessOfFit]:  # fmt: skip
     """Do what `search.attempted` does, of a pad of more than 1024 elements."""
     blocks = coarsened(problem)
     given, seen = start[:0], blocks
@@ -146,9 +151,7 @@ def attempted_on_large_pad(
         given, seen = start, Blocks(piece, blocks.block, blocks.load, blocks.moments)
     _start(problem, seen, given, table, attempt * TRIES, p)
     height = maximise_from_blocks(problem, blocks.block, p, root)
-    if height > least:
-        return height, goodness_of_fit(problem, p)
-    return height, NO_FIT
+    return looked_at(problem, p, root, height, least)
 
 
 @compiled_as_is

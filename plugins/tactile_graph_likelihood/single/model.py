@@ -29,7 +29,6 @@ from tactile_graph_likelihood.single.element_terms import LEAST, OFF, ON, States
 from tactile_graph_likelihood.single.even_points import even_points
 from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.importance import normal_points, weighted_moments
-from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.noise import Noise, NoiseTaken
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -190,23 +189,20 @@ class Model:
         """Return the most likely outline of some attempts, and of what was found before."""
         table = self._table(problem)
         n = table.shape[1]
-        best, fit = Mode(np.zeros(n), np.zeros((n, n)), -math.inf), NO_FIT
+        best, evidence, fit = _nowhere(n), -math.inf, NO_FIT
         if before is not None:
-            best, fit = before.mode, before.fit
+            best, evidence, _, fit = before
         unsure, small = attempts[-1] + 1 < ATTEMPTS, problem.states.size <= LARGE_PAD
         attempt = attempted if small else attempted_on_large_pad
         for which in attempts:
             p, root, known = np.zeros(n), np.zeros((n, n)), best.height
-            height, its = attempt.call(problem, table, begin, which, known, p, root)
+            height, log, its = attempt.call(problem, table, begin, which, known, p, root)
             if height > known:
-                best, fit = Mode(p, root, height), GoodnessOfFit(*its)
+                best, evidence, fit = Mode(p, root, height), log, its
             again = which > 0 and abs(height - known) < SAME
             if best.height > -math.inf and fit.surprise > (UNLIKELY if again else POOR):
                 unsure = False
                 break
-        evidence = best.height
-        if evidence > -math.inf:
-            evidence += _log_volume(problem.kind, best)
         return Likeliest(best, evidence, unsure, fit)
 
     def posterior_around(self, readings: Readings, mode: Mode, loose: float = 0.0) -> Posterior:
@@ -257,7 +253,7 @@ class Model:
             p, root = mode.p.copy(), mode.root.copy()
             if (height := settled.call(problem, p, root)) > -math.inf:
                 top = Mode(p, root, height)
-                evidence = height + _log_volume(problem.kind, top)
+                evidence = height + log_volume.call(problem.kind, p, root)
                 fit = goodness_of_fit.call(problem, p)
                 likeliest = Likeliest(top, evidence, False, GoodnessOfFit(*fit))
                 return self.normal_around(likeliest)
@@ -350,13 +346,6 @@ class Model:
         return begin
 
 
-def _log_volume(kind: int, mode: Mode) -> float:
-    """Return `sample.log_volume`, which is worth compiling for ovals alone."""
-    if kind == OVAL:
-        return log_volume.call(kind, mode.p, mode.root)
-    return sum(0.5 * LN_TWO_PI - math.log(width) for width in mode.root.diagonal().tolist())
-
-
 def _quiet(readings: Readings, noise: Values) -> tuple[Values, States]:
     """Return noise and states of a large pad on which the converter's noise shows as loads."""
     least = least_shown.call(readings.logs, readings.states, noise)
@@ -393,6 +382,12 @@ def _prior_of(
     if not math.isfinite(largest):
         largest = max(math.hypot(width, height), 2.0 * smallest)
     return np.array([left, top, width, height, smallest, largest, whole, math.nan, 0.0])
+
+
+@cache
+def _nowhere(n: int) -> Mode:
+    """Return the mode of a posterior of which no outline is possible."""
+    return Mode(np.zeros(n), np.zeros((n, n)), -math.inf)
 
 
 @cache

@@ -129,10 +129,9 @@ def log_volume(kind: int, p: Values, root: Values) -> float:
     root : ndarray, shape (K, K)
         Lower root of the information there.
     """
-    n = p.shape[0]
-    volume: float = 0.5 * n * LN_TWO_PI
-    for k in range(n):
-        volume -= math.log(root[k, k])
+    volume: float = 0.0
+    for k in range(p.shape[0]):
+        volume += 0.5 * LN_TWO_PI - math.log(root[k, k])
     if kind == OVAL:
         # the mean of 1 / d under a normal distribution, right where it is narrow and in a middle
         spread = inverted(root)

@@ -29,6 +29,7 @@ from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFi
 from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
 from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem
+from tactile_graph_likelihood.single.sample import log_volume
 
 STRAY = 7.0  # squared distance over the variance; a rectangle's corners are at 6, a disc's rim at 4
 TRIMS = 8
@@ -211,7 +212,7 @@ def _vary(problem: Problem, off: Values, p: Values) -> None:
 def attempted(
     problem: Problem, table: Values, start: Values, attempt: int, least: float, p: Values,
     root: Values,
-) -> tuple[float, GoodnessOfFit]:  # fmt: skip
+) -> tuple[float, float, GoodnessOfFit]:  # fmt: skip
     """Write the most likely outline as one attempt finds it.
 
     Parameters
@@ -234,8 +235,9 @@ def attempted(
 
     Returns
     -------
-    (float, GoodnessOfFit)
-        The mode's height, -inf where no outline is possible, and how well it fits.
+    (float, float, GoodnessOfFit)
+        The mode's height, -inf where no outline is possible, the log evidence if the posterior were
+        normal around it, and how well it fits.
     """
     softly = attempt >= 0
     if attempt <= 0 and start.shape[0] == p.shape[0]:
@@ -246,6 +248,14 @@ def attempted(
     if softly:
         maximise(softened(problem), None, p, root, ROUGH, math.inf)
     height = maximise(problem, None, p, root, ENOUGH, math.inf)
-    if height > least:
-        return height, goodness_of_fit(problem, p)
-    return height, NO_FIT
+    return looked_at(problem, p, root, height, least)
+
+
+@compiled_as_is
+def looked_at(
+    problem: Problem, p: Values, root: Values, height: float, least: float
+) -> tuple[float, float, GoodnessOfFit]:
+    """Return what `attempted` does of a mode."""
+    if not height > least:
+        return height, -math.inf, NO_FIT
+    return height, height + log_volume(problem.kind, p, root), goodness_of_fit(problem, p)
