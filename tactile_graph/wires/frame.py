@@ -59,6 +59,11 @@ class Frame:
     mask : Mask, optional
         The cells of the contact whose image it is, where a pipeline runs for each contact; None for
         a frame that is whole.
+    place : int, optional
+        Which frame of its recording it is, from 0, where those that were left out count as well;
+        None where the source leaves none out, and ``index`` says it.
+    own_number : int, optional
+        The number that the recording itself gives it.
     """
 
     image: Image
@@ -70,6 +75,8 @@ class Frame:
     label: str = ""
     doubtful: bool = False
     mask: Mask | None = None
+    place: int | None = None
+    own_number: int | None = None
     provides: ClassVar[Mapping[type, str]] = {Image: "image"}
 
     @classmethod
@@ -123,6 +130,13 @@ class Frame:
     def with_index(self, index: int) -> Frame:
         """Return the same frame under another number."""
         return replace(self, index=index)
+
+    def numbered(self, index: int, n_places: int = 0) -> Frame:
+        """Return the same frame under another number, behind so many more places."""
+        if index == self.index and not (n_places and self.place is not None):
+            return self
+        place = None if self.place is None else self.place + n_places
+        return replace(self, index=index, place=place)
 
     def _repr_html_(self) -> str:
         from tactile_graph.wires.notebook import frame_html

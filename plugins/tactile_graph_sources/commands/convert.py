@@ -80,11 +80,11 @@ def convert(
     try:
         wanted = (source, settings, told, n_frames)
         frames = _frames(recordings, *wanted, seed, report)
-        frames = islice(frames, n_frames)
         if truth is not None:
             from tactile_graph_sources.readers.words.truth_file import with_truth
 
-            frames = with_truth(frames, truth)
+            frames = with_truth(frames, truth, report)
+        frames = islice(frames, n_frames)
         about = source or ", ".join(r.name for r in recordings)
         n = writer.write(target, kept.watch(frames), about)
     except ValueError as error:

@@ -199,11 +199,14 @@ def _check_files(asked: _Options) -> None:
 
 def _frames(opened: Pipeline, span: Span, asked: _Options) -> Sequence[Frame]:
     """Return the frames to choose by, with the truth that a file holds."""
-    frames: Iterator[Frame] = opened.frames(asked.seed)
+    from tactile_graph.steps.injected import Report
+
+    report = Report()
+    frames: Iterator[Frame] = opened.frames(asked.seed, report)
     if asked.truth is not None:
         from tactile_graph_sources.readers.words.truth_file import with_truth
 
-        frames = with_truth(frames, asked.truth)
+        frames = with_truth(frames, asked.truth, report)
     return list(span.of(frames))
 
 
