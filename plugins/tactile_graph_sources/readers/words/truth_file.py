@@ -141,12 +141,46 @@ def _spans(path: Path) -> _Table:
     header = [n.strip().lower() for n in next(rows, [])]
     by = _checked_header(f"{path}:1", header)
     spans: Spans = []
+    lines: list[int] = []
     for fields in rows:
         if any(f.strip() for f in fields):
             where = f"{path}:{rows.line_num}"
-            row = dict(zip(header, (f.strip() for f in fields), strict=False))
+            row = _row(where, header, [f.strip() for f in fields])
             spans.append((_span(where, by, row[by]), _object(where, row)))
+            lines.append(rows.line_num)
+    if not spans:
+        told = "a header and no line below it; each line says what lies in which frames"
+        raise DataError(str(path), told)
+    _refuse_contradictions(path, spans, lines)
     return _Table(by, spans)
+
+
+def _row(where: str, header: list[str], fields: list[str]) -> dict[str, str]:
+    """Return a line's fields by the names of their columns; those that are not there are empty."""
+    n = len(header)
+    if any(fields[n:]):
+        raise DataError(
+            where,
+            f"{len(fields)} fields, the header names {n}; decimal commas need ';' or tabs between "
+            "the columns, in all lines",
+        )
+    return dict(zip(header, fields[:n] + [""] * (n - len(fields)), strict=True))
+
+
+def _refuse_contradictions(path: Path, spans: Spans, lines: list[int]) -> None:
+    """Refuse a frame of which one line says that nothing lies there, and another that something."""
+    ends = {False: (-1, 0), True: (-1, 0)}  # of frames said to be empty, and not: up to, by line
+    whole = range(10**MOST_DIGITS)
+    said = [(span or whole, o is not None, n) for (span, o), n in zip(spans, lines, strict=True)]
+    for span, holds, line in sorted(said, key=lambda one: one[0].start):
+        stop, other = ends[not holds]
+        if span.start < stop:
+            what = "an object lies there" if holds else "nothing does"
+            raise DataError(
+                f"{path}:{line}",
+                f"{what} in frame {span.start}, and line {other} says the opposite; keep one",
+            )
+        ends[holds] = max(ends[holds], (span.stop, line))
 
 
 def _checked_header(where: str, header: list[str]) -> By:
@@ -155,6 +189,10 @@ def _checked_header(where: str, header: list[str]) -> By:
         if name not in COLUMNS:
             near = did_you_mean(name, COLUMNS)
             raise DataError(where, f"no column {name!r}; known: {', '.join(COLUMNS)}{near}")
+        if header.count(name) > 1:
+            first, second = [k for k, n in enumerate(header, 1) if n == name][:2]
+            told = f"columns {first} and {second} are both {name!r}; keep one of them"
+            raise DataError(where, told)
     by = [name for name in BY if name in header]
     if not by or "kind" not in header:
         raise DataError(where, "a header with 'frames' and 'kind' is needed")
@@ -177,12 +215,19 @@ def _span(where: str, by: By, text: str) -> range | None:
 
 def _object(where: str, row: Mapping[str, str]) -> TrueObject | None:
     kind = row.get("kind", "").lower()
-    if kind == "none":
+    known = (*SHAPES, "none")
+    if kind not in known:
+        told = f"unknown kind {kind!r}, known: {one_of(known)}{did_you_mean(kind, known)}"
+        raise DataError(where, told)
+    shape, names = SHAPES.get(kind, (None, ()))
+    about = (*BY, "kind", "name") if shape is None else (*BY, "kind", *names, "weight_g", "name")
+    for name, text in row.items():
+        if text and name not in about:
+            has = f"kind {kind!r} has no {name}, got {text!r}"
+            way = "decimal commas need ';' or tabs between the columns" if names else "leave it out"
+            raise DataError(where, f"{has}; {way}")
+    if shape is None:
         return None
-    if kind not in SHAPES:
-        known = one_of((*SHAPES, "none"))
-        raise DataError(where, f"unknown kind {kind!r}, known: {known}{did_you_mean(kind, SHAPES)}")
-    shape, names = SHAPES[kind]
     numbers = [_number(where, name, row.get(name, "")) for name in names]
     if names[-1] == "angle_deg":
         numbers[-1] = math.radians(numbers[-1])

@@ -20,6 +20,7 @@ def frames(n: int = 4) -> Iterator[Frame]:
     return (Frame.of(np.zeros((2, 2)), index=k) for k in range(n))
 
 
+CIRCLE = "frames,kind,x_cm,y_cm,radius_cm"
 TABLE = """frames;kind;x_cm;y_cm;radius_cm;length_cm;breadth_cm;angle_deg;weight_g;name
 0-1;circle;1,5;2;0.5;;;;200;cup
 1;rectangle;3;4;;2;1;90;;
@@ -33,6 +34,13 @@ def test_a_table_says_what_lies_in_which_frames(tmp_path: Path) -> None:
     cup = TrueObject(Circle(1.5, 2.0, 0.5), 200.0, "cup")
     bar = TrueObject(Rectangle(3.0, 4.0, 2.0, 1.0, math.pi / 2))
     assert [f.truth for f in with_truth(frames(), path)] == [(cup,), (cup, bar), (), None]
+
+
+def test_empty_fields_at_the_end_of_a_line_are_none(tmp_path: Path) -> None:
+    path = tmp_path / "truth.csv"
+    path.write_text(f"{CIRCLE}\n0-1,circle,1,2,3,,,\n2,none\n3,circle,1,2,3\n2-2,none\n")
+    cup = TrueObject(Circle(1.0, 2.0, 3.0))
+    assert [f.truth for f in with_truth(frames(), path)] == [(cup,), (cup,), (), (cup,)]
 
 
 def test_all_is_every_frame(tmp_path: Path) -> None:
@@ -64,6 +72,26 @@ def test_a_list_is_one_entry_a_frame(tmp_path: Path) -> None:
         ("frames,kind,x_cm,y_cm,radius_cm\n0,circle,,2,3\n", "x_cm: must be a number, got ''"),
         ("frames,kind\n3-1,none\n", "must be such as 7, 10-25 or all, got '3-1'"),
         ("frames,kind\n9,none\n", "speaks of frame 9, the last one is 3"),
+        (
+            f"{CIRCLE}\n0,circle,12,65,10,94,6,8\n",
+            "truth.csv:2: 8 fields, the header names 5; deci",
+        ),
+        (
+            f"{CIRCLE},length_cm\n0,circle,12,65,10,94\n",
+            "2: kind 'circle' has no length_cm, got '94'",
+        ),
+        (f"{CIRCLE}\n0,none,12\n", "truth.csv:2: kind 'none' has no x_cm, got '12'; leave it out"),
+        (f"{CIRCLE},x_cm\n0,circle,1,2,3,4\n", "1: columns 3 and 6 are both 'x_cm'; keep one of"),
+        (
+            f"{CIRCLE}\n0-2,circle,1,2,3\n2,none\n",
+            "3: nothing does in frame 2, and line 2 says the",
+        ),
+        (f"{CIRCLE}\nall,none\n1,circle,1,2,3\n", "3: an object lies there in frame 1, and line 2"),
+        (f"{CIRCLE}\n", "truth.csv: a header and no line below it"),
+        (
+            "frames,kind\n1234567890123,none\n",
+            "must be such as 7, 10-25 or all, got '1234567890123'",
+        ),
     ],
 )
 def test_what_cannot_be_true_is_named(text: str, what: str, tmp_path: Path) -> None:
