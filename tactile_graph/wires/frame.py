@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tactile_graph.quantities import checked_quantity
 from tactile_graph.wires.image import Image, Mask
 from tactile_graph.wires.measure import Measured
-from tactile_graph.wires.shapes import Shape
+from tactile_graph.wires.shapes import Shape, longer_side_first
 
 LARGEST = 1e100
 """Beyond this, what a sensor gave is no reading."""
@@ -27,12 +27,17 @@ FARTHEST_CM = 1e9
 class TrueObject:
     """An object that truly lay on the pad when the frame was taken.
 
-    Its shape may be a plugin's own, which says by ``error_measures`` how it is measured.
+    Its shape may be a plugin's own, which says by ``error_measures`` how it is measured. A
+    rectangle or ellipse given with its shorter side first is turned by a quarter: it is the same
+    shape, and answers are held against its longer side.
     """
 
     shape: Shape | Measured
     weight_g: float | None = None
     name: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "shape", longer_side_first(self.shape))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -41,6 +42,21 @@ def test_empty_fields_at_the_end_of_a_line_are_none(tmp_path: Path) -> None:
     path.write_text(f"{CIRCLE}\n0-1,circle,1,2,3,,,\n2,none\n3,circle,1,2,3\n2-2,none\n")
     cup = TrueObject(Circle(1.0, 2.0, 3.0))
     assert [f.truth for f in with_truth(frames(), path)] == [(cup,), (cup,), (), (cup,)]
+
+
+def test_a_rectangle_is_the_same_whichever_side_comes_first(tmp_path: Path) -> None:
+    table, listed = tmp_path / "truth.csv", tmp_path / "truth.json"
+    table.write_text(
+        "frames,kind,x_cm,y_cm,length_cm,breadth_cm,angle_deg\n"
+        "0,rectangle,1,2,6,2,30\n1,rectangle,1,2,2,6,120\n"
+    )
+    bar = {"kind": "rectangle", "x_cm": 1, "y_cm": 2, "length_cm": 2, "breadth_cm": 6}
+    listed.write_text(json.dumps([[{**bar, "angle_rad": math.radians(120)}]]))
+    found = [f.truth for f in with_truth(frames(2), table)]
+    found += [f.truth for f in with_truth(frames(1), listed)]
+    shapes = [truth[0].shape for truth in found if truth]
+    assert all(isinstance(s, Rectangle) and s.length_cm == 6.0 for s in shapes)
+    assert [s.angle_deg for s in shapes if isinstance(s, Rectangle)] == pytest.approx([30.0] * 3)
 
 
 def test_all_is_every_frame(tmp_path: Path) -> None:
