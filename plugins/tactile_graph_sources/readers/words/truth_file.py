@@ -82,7 +82,7 @@ def _text(path: Path) -> str:
 
 def _listed(path: Path) -> list[Truth]:
     try:
-        return truth_from_json(_text(path))
+        return truth_from_json(_text(path), by_hand=True)
     except ValueError as error:
         raise DataError(str(path), str(error)) from error
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -117,11 +118,57 @@ def test_what_cannot_be_true_is_named(text: str, what: str, tmp_path: Path) -> N
         list(with_truth(frames(), path))
 
 
-def test_json_that_is_no_truth_says_so(tmp_path: Path) -> None:
+GOOD = {"kind": "circle", "x_cm": 9, "y_cm": 11, "radius_cm": 6}
+
+
+@pytest.mark.parametrize(
+    ("listed", "what"),
+    [
+        (
+            {"0": {"x": 9}},
+            'must be a list with an entry for each frame, got {"0": {"x": 9}}; such as '
+            '[[{"kind": "circle", "x_cm": 9, "y_cm": 11, "radius_cm": 6}], [], null]',
+        ),
+        ([None, GOOD], 'frame 1: must be null or a list of objects, got {"kind": "circle", "x'),
+        ([[GOOD, "cup"]], 'frame 0, object 1: must be an object, got "cup"; such as [[{"kind"'),
+        (
+            [[{"shape": "circle", "x_cm": 9, "y_cm": 11, "radius_cm": 6}]],
+            "frame 0, object 0: has no 'kind' (circle, ellipse, polygon, rectangle); 'shape' is",
+        ),
+        (
+            [[{**GOOD, "kind": "cirle"}]],
+            "kind \"cirle\", known: circle, ellipse, polygon, rectangle; did you mean 'circle'?",
+        ),
+        ([[{**GOOD, "kind": 3}]], "unknown kind 3, known: circle"),
+        (
+            [[{"kind": "circle", "x_cm": 9, "y_cm": 11, "radius": 6}]],
+            "unknown key 'radius'; a circle has kind, x_cm, y_cm, radius_cm, weight_g, name; "
+            "did you mean 'radius_cm'?",
+        ),
+        ([[{"kind": "circle", "x_cm": 9, "y_cm": 1}]], "frame 0, object 0: has no 'radius_cm'"),
+        ([[{**GOOD, "weight": 9}]], "weight_g, name; did you mean 'weight_g'?"),
+        ([[{**GOOD, "x_cm": "9,5"}]], 'frame 0, object 0: x_cm: must be a number, got "9,5"'),
+        ([[{**GOOD, "radius_cm": -6}]], "radius_cm: must be a number > 0, got -6"),
+        ([[{**GOOD, "x_cm": math.nan}]], "x_cm: must be a number, got NaN"),
+        ([[{**GOOD, "x_cm": 10**400}]], "x_cm: must be a number, got 1000000000"),
+        ([[{"kind": "polygon", "xy_cm": [1, 2]}]], "xy_cm: must be corners, a list of pairs"),
+    ],
+)
+def test_json_that_is_no_truth_says_where_what_and_what_is_right(
+    listed: object, what: str, tmp_path: Path
+) -> None:
     path = tmp_path / "truth.json"
-    path.write_text('[[{"kind": "cube"}]]')
-    with pytest.raises(DataError, match="no list of true objects"):
-        list(with_truth(frames(1), path))
+    path.write_text(json.dumps(listed))
+    with pytest.raises(DataError, match=re.escape(what)):
+        list(with_truth(frames(2), path))
+
+
+@pytest.mark.parametrize("text", ["no JSON", "[" * 100_000])
+def test_what_is_no_json_is_told(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "truth.json"
+    path.write_text(text)
+    with pytest.raises(DataError, match="is no JSON"):
+        list(with_truth(frames(2), path))
 
 
 def test_a_true_shape_of_a_plugins_own_cannot_be_written():
