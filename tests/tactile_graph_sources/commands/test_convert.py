@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from tactile_graph import Frame
 from tactile_graph.cli import cli
 from tactile_graph.steps.injected import Report
-from tactile_graph.wires import Circle
+from tactile_graph.wires import Circle, TrueObject
 from tactile_graph_sources.commands.convert import convert
 from tactile_graph_sources.recording import recording
 from tactile_graph_sources.writers.write_npz import write_npz
@@ -164,3 +164,21 @@ def test_truth_stays_with_its_frame_where_one_is_left_out(tmp_path: Path) -> Non
         f.truth[0].shape for f in recording(path=tmp_path / "d.npz", report=Report()) if f.truth
     ]
     assert [s.x_cm for s in shapes if isinstance(s, Circle)] == [2, 4, 5, 6, 7]
+
+
+def test_truth_that_replaces_another_is_told(tmp_path: Path) -> None:
+    frames = [
+        Frame.of(
+            np.ones((3, 5)), index=k, truth=(TrueObject(Circle(1.0, 2.0, 3.0)),) if k else None
+        )
+        for k in range(6)
+    ]
+    write_npz(tmp_path / "a.npz", frames)
+    truth = tmp_path / "truth.csv"
+    truth.write_text("frames,kind,x_cm,y_cm,radius_cm\n0-3,circle,1,2,0.5\n")
+    said = run(tmp_path / "a.npz", tmp_path / "b.npz", "--truth", truth)
+    what = "truth.csv: replaces the truth that the recording held of"
+    assert f"{what} 5 frames; of 2 of them it says nothing\n" in said
+    said = run(tmp_path / "a.npz", tmp_path / "c.npz", "--truth", truth, "--frames", 2)
+    assert f"{what} 1 frame\n" in said
+    assert "replaces the truth" not in run(tmp_path / "b.npz", tmp_path / "d.npz")

@@ -5,12 +5,13 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph.foreign_text import tell
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires import Circle, Ellipse, Frame, Rectangle, TrueObject
 from tactile_graph_sources.readers.words.counting import BY, By, Counting
@@ -38,11 +39,12 @@ class _Table(NamedTuple):
 
 def with_truth(
     frames: Iterator[Frame], path: Path, report: Report | None = None
-) -> Iterator[Frame]:
-    """Yield the frames with the truth that a file holds.
+) -> Generator[Frame, None, None]:
+    """Yield the frames with the truth that a file holds, instead of what the recording held.
 
     Frames are counted as they stand in the recording (`Frame.place`), so that one which was left
-    out, by ``skip`` too, keeps its number; what may surprise about that is told on stderr.
+    out, by ``skip`` too, keeps its number; what may surprise about that is told on stderr. So is of
+    how many frames the recording held a truth, at the end or when this is closed.
 
     Parameters
     ----------
@@ -63,10 +65,44 @@ def with_truth(
     DataError
         If the file cannot be understood, speaks of frames that are not there, or may mean others.
     """
+    replaced = _Replaced()
+    kept = replaced.watch(frames)
     if path.suffix.lower() == ".json":
-        yield from _by_list(frames, _listed(path), path, report)
+        attached = _by_list(kept, _listed(path), path, report)
     else:
-        yield from _by_spans(frames, _spans(path), path, report)
+        attached = _by_spans(kept, _spans(path), path, report)
+    try:
+        for frame in attached:
+            replaced.n_unknown += replaced.was_known and frame.truth is None
+            yield frame
+    except GeneratorExit:  # who takes them has enough
+        replaced.tell(str(path))
+        raise
+    replaced.tell(str(path))
+
+
+class _Replaced:
+    """Counts frames whose truth the recording held, and of which the file says nothing."""
+
+    def __init__(self) -> None:
+        self.n = self.n_unknown = 0
+        self.was_known = False
+
+    def watch(self, frames: Iterator[Frame]) -> Iterator[Frame]:
+        for frame in frames:
+            self.was_known = frame.truth is not None
+            self.n += self.was_known
+            yield frame
+
+    def tell(self, path: str) -> None:
+        if self.n:
+            told = f"{path}: replaces the truth that the recording held of {_frames(self.n)}"
+            of_it = f"; of {self.n_unknown} of them it says nothing" if self.n_unknown else ""
+            tell(told + of_it)
+
+
+def _frames(n: int) -> str:
+    return f"{n} frame{'s' if n != 1 else ''}"
 
 
 def _text(path: Path) -> str:
