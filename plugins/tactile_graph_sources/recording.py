@@ -120,11 +120,14 @@ def recording(
         flip=flip,
         skip=skip,
     )
-    index = 0
+    index = n_places = 0
     for one, label in _files(path, report):
-        for frame in opened(one, told, report, label).frames:
-            yield frame if frame.index == index else frame.with_index(index)
+        found = opened(one, told, report, label)
+        for frame in found.frames:
+            yield frame.numbered(index, n_places)
             index += 1
+        n_places += found.n_places()
+    report.n_places = n_places
 
 
 def recording_stacked(
@@ -142,11 +145,14 @@ def recording_stacked(
     """Frames of the same recordings, many in a stack where the file holds them as one array."""
     columns = ColumnsTold(frame_column, time_column, value_column, cells, time_unit, time_format)
     told = Told.of(columns, **placed)
-    index = 0
+    index = n_places = 0
     for one, label in _files(path, report):
-        for some in opened(one, told, report, label, in_stacks=not told.skip).frames:
-            yield some.with_index(index) if isinstance(some, Frame) else some.numbered(index)
+        found = opened(one, told, report, label, in_stacks=not told.skip)
+        for some in found.frames:
+            yield some.numbered(index, n_places)
             index += 1 if isinstance(some, Frame) else len(some)
+        n_places += found.n_places()
+    report.n_places = n_places
 
 
 recording.stacked = recording_stacked  # type: ignore[attr-defined]
@@ -172,12 +178,14 @@ def _files(path: Path | list[Path], report: Report) -> list[tuple[Path, str]]:
 class Opened(NamedTuple):
     """A recording that is about to be read: what it was recognised as, and its frames.
 
-    ``why`` says in words how it was recognised, once a frame was asked for.
+    ``why`` says in words how it was recognised, once a frame was asked for; ``n_places`` how many
+    frames it holds, those that were left out too, once all were.
     """
 
     format: str
     why: Callable[[], str]
     frames: Iterator[Any]
+    n_places: Callable[[], int]
 
 
 def opened(
@@ -204,7 +212,8 @@ def opened(
         whole = stacks_without_garbage(stacks_with_leaps_told(frames, report, where), report, where)
     else:
         whole = without_garbage(with_leaps_told(frames, report, where), report, where)
-    return Opened(found.name, lambda: reading.why or "by its first lines", whole)
+    why = "by its first lines"
+    return Opened(found.name, lambda: reading.why or why, whole, lambda: reading.place)
 
 
 def _recognised(path: Path, told: Told, report: Report) -> tuple[Head, RecordingFormat]:

@@ -81,7 +81,9 @@ class _Stack(NamedTuple):
     rest: list[tuple[Any, ...]]
 
 
-_REST = ("index", "time_s", "truth", "device_time_s", "gap", "label", "doubtful")
+_REST = (
+    "index", "time_s", "truth", "device_time_s", "gap", "label", "doubtful", "place", "own_number",
+)  # fmt: skip
 
 
 def packed(frames: Sequence[Frame | FrameStack]) -> bytes:

@@ -39,6 +39,12 @@ class Report:
         Called with ``(where, what)`` at each trouble, as it happens.
     keep : int
         How many troubles are kept word for word; all are counted.
+
+    Attributes
+    ----------
+    n_places : int or None
+        How many frames the recordings hold, those that were left out too (`Frame.place`); None
+        until they are read to their end.
     """
 
     def __init__(
@@ -47,6 +53,7 @@ class Report:
         self.counts: Counter[str] = Counter()
         self.troubles: list[tuple[str, str]] = []
         self.n_expected: int | None = None
+        self.n_places: int | None = None
         self.digests: dict[str, str] = {}
         self._listener = listener
         self._keep = keep

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tactile_graph.quantities import checked_quantity
 from tactile_graph.wires.image import Image, Mask
 from tactile_graph.wires.measure import Measured
-from tactile_graph.wires.shapes import Shape
+from tactile_graph.wires.shapes import Shape, longer_side_first
 
 LARGEST = 1e100
 """Beyond this, what a sensor gave is no reading."""
@@ -27,12 +27,17 @@ FARTHEST_CM = 1e9
 class TrueObject:
     """An object that truly lay on the pad when the frame was taken.
 
-    Its shape may be a plugin's own, which says by ``error_measures`` how it is measured.
+    Its shape may be a plugin's own, which says by ``error_measures`` how it is measured. A
+    rectangle or ellipse given with its shorter side first is turned by a quarter: it is the same
+    shape, and answers are held against its longer side.
     """
 
     shape: Shape | Measured
     weight_g: float | None = None
     name: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "shape", longer_side_first(self.shape))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,6 +64,11 @@ class Frame:
     mask : Mask, optional
         The cells of the contact whose image it is, where a pipeline runs for each contact; None for
         a frame that is whole.
+    place : int, optional
+        Which frame of its recording it is, from 0, where those that were left out count as well;
+        None where the source leaves none out, and ``index`` says it.
+    own_number : int, optional
+        The number that the recording itself gives it.
     """
 
     image: Image
@@ -70,6 +80,8 @@ class Frame:
     label: str = ""
     doubtful: bool = False
     mask: Mask | None = None
+    place: int | None = None
+    own_number: int | None = None
     provides: ClassVar[Mapping[type, str]] = {Image: "image"}
 
     @classmethod
@@ -123,6 +135,13 @@ class Frame:
     def with_index(self, index: int) -> Frame:
         """Return the same frame under another number."""
         return replace(self, index=index)
+
+    def numbered(self, index: int, n_places: int = 0) -> Frame:
+        """Return the same frame under another number, behind so many more places."""
+        if index == self.index and not (n_places and self.place is not None):
+            return self
+        place = None if self.place is None else self.place + n_places
+        return replace(self, index=index, place=place)
 
     def _repr_html_(self) -> str:
         from tactile_graph.wires.notebook import frame_html

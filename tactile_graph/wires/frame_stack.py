@@ -27,6 +27,8 @@ class FrameStack(Stack):
         When they were taken; None where the source keeps no time.
     frames : sequence of Frame, optional
         The frames themselves, where they are there already and may say more than that.
+    place : ndarray of int, shape (n,), optional
+        Which frames of their recording they are (`Frame.place`).
     """
 
     item = Frame
@@ -37,9 +39,10 @@ class FrameStack(Stack):
         index: NDArray[np.int64],
         time_s: NDArray[np.float64] | None = None,
         frames: Sequence[Frame] | None = None,
+        place: NDArray[np.int64] | None = None,
     ) -> None:
         self.images, self.index, self.time_s = images, index, time_s
-        self.frames = frames
+        self.frames, self.place = frames, place
 
     @classmethod
     def of(cls, frames: Sequence[Frame]) -> FrameStack:
@@ -54,13 +57,15 @@ class FrameStack(Stack):
         if self.frames is not None:
             return self.frames[i]
         time_s = None if self.time_s is None else float(self.time_s[i])
-        return Frame(self.images[i], int(self.index[i]), time_s)
+        place = None if self.place is None else int(self.place[i])
+        return Frame(self.images[i], int(self.index[i]), time_s, place=place)
 
     def take(self, rows: Rows) -> FrameStack:
         """Return some of the frames."""
         time_s = None if self.time_s is None else self.time_s[rows]
         frames = None if self.frames is None else [self.frames[i] for i in rows.tolist()]
-        return FrameStack(self.images.take(rows), self.index[rows], time_s, frames)
+        place = None if self.place is None else self.place[rows]
+        return FrameStack(self.images.take(rows), self.index[rows], time_s, frames, place)
 
     def field(self, name: str) -> Stack | None:
         """Return the images, or the frames' numbers."""
@@ -75,19 +80,22 @@ class FrameStack(Stack):
         images = first.images
         values = np.concatenate([stack.images.values for stack in stacks])
         times_s = [stack.time_s for stack in stacks if stack.time_s is not None]
+        places = [stack.place for stack in stacks if stack.place is not None]
         return cls(
             ImageStack(values, images.pitch_cm, images.origin_cm, images.quantity),
             np.concatenate([stack.index for stack in stacks]),
             np.concatenate(times_s) if times_s else None,
+            place=np.concatenate(places) if len(places) == len(stacks) else None,
         )
 
-    def numbered(self, first: int) -> FrameStack:
-        """Return the same frames, numbered from ``first`` on."""
+    def numbered(self, first: int, n_places: int = 0) -> FrameStack:
+        """Return the same frames, numbered from ``first`` on, behind so many more places."""
         index = np.arange(first, first + len(self))
         frames = self.frames
         if frames is not None:
-            frames = [frame.with_index(i) for i, frame in enumerate(frames, first)]
-        return FrameStack(self.images, index, self.time_s, frames)
+            frames = [frame.numbered(i, n_places) for i, frame in enumerate(frames, first)]
+        place = None if self.place is None else self.place + n_places
+        return FrameStack(self.images, index, self.time_s, frames, place)
 
     @property
     def times_s(self) -> list[float | None]:

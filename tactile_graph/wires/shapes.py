@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -195,3 +195,19 @@ def quick_polygon(xy_cm: NDArray[np.float64]) -> Polygon:
 _new = object.__new__
 
 Shape = Circle | Ellipse | Rectangle | Polygon
+
+
+def longer_side_first(shape: Any) -> Any:
+    """Return the same rectangle or ellipse with its longer side, or axis, as the first.
+
+    Other shapes, and those of plugins, are left as they are.
+    """
+    if type(shape) is Rectangle and shape.length_cm < shape.breadth_cm:
+        long, short = shape.breadth_cm, shape.length_cm
+        turned = shape.angle_rad + math.pi / 2
+        return replace(shape, length_cm=long, breadth_cm=short, angle_rad=turned)
+    if type(shape) is Ellipse and shape.semi_major_cm < shape.semi_minor_cm:
+        long, short = shape.semi_minor_cm, shape.semi_major_cm
+        turned = shape.angle_rad + math.pi / 2
+        return replace(shape, semi_major_cm=long, semi_minor_cm=short, angle_rad=turned)
+    return shape

@@ -358,7 +358,7 @@ def test_damaged_truth_is_left_out_and_the_frames_kept(tmp_path: Path) -> None:
     )
     frames, report = frames_of(path)
     assert [f.truth for f in frames] == [None] * 3
-    assert "the truth is left out: no list of true objects" in report.troubles[0][1]
+    assert "the truth is left out: frame 0, object 0: unknown kind" in report.troubles[0][1]
 
 
 def test_a_recording_past_midnight_goes_on(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import ExitStack, closing
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -52,7 +53,8 @@ OFFERS = "recording_writers"
 @click.option(
     "--truth",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="What truly lay on the pad: a table of one object a line, or JSON.",
+    help="What truly lay on the pad: a table of one object a line, or JSON; it replaces what the "
+    "recording says of that.",
 )
 def convert(
     paths: tuple[Path, ...],
@@ -76,17 +78,17 @@ def convert(
     *recordings, target = paths
     _check(recordings, target, source)
     writer: RecordingWriter = installed().load(OFFERS, target.suffix)
-    report, kept = Report(), _Carried()
+    report, kept, opened = Report(), _Carried(), ExitStack()
     try:
         wanted = (source, settings, told, n_frames)
         frames = _frames(recordings, *wanted, seed, report)
-        frames = islice(frames, n_frames)
         if truth is not None:
             from tactile_graph_sources.readers.words.truth_file import with_truth
 
-            frames = with_truth(frames, truth)
+            frames = opened.enter_context(closing(with_truth(frames, truth, report)))
         about = source or ", ".join(r.name for r in recordings)
-        n = writer.write(target, kept.watch(frames), about)
+        with opened:
+            n = writer.write(target, kept.watch(islice(frames, n_frames)), about)
     except ValueError as error:
         raise UsageError(str(error)) from error
     say(f"{target}: {n} frame{'s' if n != 1 else ''}")

@@ -48,6 +48,8 @@ class Reading:
         self.told = told
         self.report = report
         self.index = self.start = index
+        self.place = 0
+        """Which frame of the recording comes next, from 0; those that are left out count."""
         self.why = ""
         self.label = label
         self.sensors: dict[str, None] = {}
@@ -67,7 +69,7 @@ class Reading:
         What is told once for a recording is not told again, and a gap goes over to the next file.
         """
         part = Reading(head, self.told, self.report, self.index, self.label)
-        part.start, part.sensors = self.start, self.sensors
+        part.start, part.place, part.sensors = self.start, self.place, self.sensors
         part._fresh, part._gaps = self._fresh, self._gaps
         return part
 
@@ -118,11 +120,21 @@ class Reading:
         """Return a place in the file for messages."""
         return f"{self.path}:{line}"
 
-    def damaged(self, line: int | str, what: str, sensors: Iterable[str] = ()) -> None:
+    def damaged(
+        self, line: int | str, what: str, sensors: Iterable[str] = (), n_frames: int = 1
+    ) -> None:
         """Note a record that is left out; the next frame is marked as after a gap.
 
-        Where sensors are named, the next frame of each of them is.
+        Parameters
+        ----------
+        line : int or str
+        what : str
+        sensors : iterable of str
+            Where they are named, the next frame of each of them is marked.
+        n_frames : int
+            How many frames are left out with it: 0 where it is no frame, or nobody knows.
         """
+        self.place += n_frames
         self.report.count("damaged records skipped")
         self.report.trouble(self.at(line), what)
         self.first_damage = self.first_damage or f"line {line}: {what}"
@@ -144,6 +156,7 @@ class Reading:
             seen.clear()
         if number in seen:
             self.repeated(line, name)
+            self.place += 1
             return True
         seen.add(number)
         return False
@@ -172,8 +185,12 @@ class Reading:
         truth: tuple[TrueObject, ...] | None = None,
         device_time_s: float | None = None,
         gap: bool = False,
+        own_number: float | None = None,
     ) -> Frame:
-        """Return the next frame; cells without a reading or not ``valid`` become invalid."""
+        """Return the next frame; cells without a reading or not ``valid`` become invalid.
+
+        ``own_number`` is the number that the file gives it, which counts if it is a whole one.
+        """
         with np.errstate(over="ignore"):
             values = np.array(values, dtype=np.float64)  # the one copy: frames own their values
             filled = None if self.is_own else filling(values)
@@ -200,8 +217,20 @@ class Reading:
         gap = gap or not self._gaps.isdisjoint(("", sensor))
         self._gaps -= {"", sensor}
         label = " ".join(filter(None, (self.label, sensor)))
-        frame = Frame(image, self.index, time_s, truth, device_time_s, gap, label)
+        number = None if own_number is None or own_number % 1 else int(own_number)
+        frame = Frame(
+            image,
+            self.index,
+            time_s,
+            truth,
+            device_time_s,
+            gap,
+            label,
+            place=self.place,
+            own_number=number,
+        )
         self.index += 1
+        self.place += 1
         return frame
 
     def frames(
@@ -272,8 +301,10 @@ class Reading:
             return None
         images = ImageStack(values, *self.grid(**same))
         index = np.arange(self.index, self.index + len(values))
+        place = np.arange(self.place, self.place + len(values))
         self.index += len(values)
-        return FrameStack(images, index, times_s)
+        self.place += len(values)
+        return FrameStack(images, index, times_s, place=place)
 
     def _turned(
         self, values: NDArray[Any], mask: NDArray[np.bool_] | None, truth: object

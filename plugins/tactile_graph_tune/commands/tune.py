@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -46,7 +47,8 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
 @pipeline_argument
 @click.argument("recordings", metavar="[RECORDING]...", nargs=-1)
 @click.option("--truth", type=click.Path(path_type=Path), metavar="FILE",
-              help="What truly lay there, for recordings that do not hold it.")  # fmt: skip
+              help="What truly lay there; it replaces what the recordings say of that.",
+              )  # fmt: skip
 @click.option("--held-out", multiple=True, metavar="RECORDING",
               help="Report on this recording, choose by the others; can be repeated.")  # fmt: skip
 @click.option("--source", metavar="STEP", help="Take frames from this source step.")
@@ -199,12 +201,16 @@ def _check_files(asked: _Options) -> None:
 
 def _frames(opened: Pipeline, span: Span, asked: _Options) -> Sequence[Frame]:
     """Return the frames to choose by, with the truth that a file holds."""
-    frames: Iterator[Frame] = opened.frames(asked.seed)
-    if asked.truth is not None:
-        from tactile_graph_sources.readers.words.truth_file import with_truth
+    from tactile_graph.steps.injected import Report
 
-        frames = with_truth(frames, asked.truth)
-    return list(span.of(frames))
+    report = Report()
+    frames: Iterator[Frame] = opened.frames(asked.seed, report)
+    if asked.truth is None:
+        return list(span.of(frames))
+    from tactile_graph_sources.readers.words.truth_file import with_truth
+
+    with closing(with_truth(frames, asked.truth, report)) as known:
+        return list(span.of(known))
 
 
 def _recorded(opened: Pipeline, name: str, asked: _Options) -> Iterator[Frame]:

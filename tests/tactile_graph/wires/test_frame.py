@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame, Image, Mask, Points
+from tactile_graph.wires import Ellipse, Rectangle, TrueObject
 
 
 def test_values_are_copied_and_frozen() -> None:
@@ -139,3 +141,16 @@ def test_sums_leave_invalid_cells_out() -> None:
     image = Image(np.array([[1.0, 5.0]]), valid=np.array([[True, False]]))
     assert (image.total, image.peak) == (1.0, 1.0)
     assert image.filled(-1.0).tolist() == [[1.0, -1.0]]
+
+
+def test_a_true_shape_with_its_shorter_side_first_is_the_same_one_turned() -> None:
+    bar = TrueObject(Rectangle(3.0, 4.0, 2.0, 6.0, 0.3)).shape
+    assert bar == Rectangle(3.0, 4.0, 6.0, 2.0, 0.3 + math.pi / 2)
+    egg = TrueObject(Ellipse(3.0, 4.0, 2.0, 6.0, 0.3)).shape
+    assert egg == Ellipse(3.0, 4.0, 6.0, 2.0, 0.3 + math.pi / 2)
+    corners = [
+        np.asarray(sorted(s.outline_cm().tolist())) for s in (bar, Rectangle(3, 4, 2, 6, 0.3))
+    ]  # type: ignore[union-attr]
+    np.testing.assert_allclose(*corners)
+    for shape in (Rectangle(3.0, 4.0, 6.0, 2.0, 0.3), Ellipse(3.0, 4.0, 2.0, 2.0, 0.3)):
+        assert TrueObject(shape).shape is shape

@@ -11,6 +11,7 @@ from click.testing import CliRunner
 from tactile_graph import Frame
 from tactile_graph.cli import cli
 from tactile_graph.steps.injected import Report
+from tactile_graph.wires import Circle, TrueObject
 from tactile_graph_sources.commands.convert import convert
 from tactile_graph_sources.recording import recording
 from tactile_graph_sources.writers.write_npz import write_npz
@@ -141,3 +142,43 @@ def test_a_source_that_will_not_do_is_refused(
     result = CliRunner().invoke(cli, ["convert", *paths])
     assert result.exit_code == 2
     assert message in result.output
+
+
+def test_truth_stays_with_its_frame_where_one_is_left_out(tmp_path: Path) -> None:
+    lines = [",".join(str((7 * c + k) % 11) for c in range(15)) for k in range(8)]
+    lines[3] = lines[3][:9]
+    (tmp_path / "bad.csv").write_text("\n".join(lines) + "\n")
+    truth = tmp_path / "truth.csv"
+    rows = [f"{k},circle,{k},2,0.5" for k in range(8)]
+    truth.write_text("\n".join(["frames,kind,x_cm,y_cm,radius_cm", *rows]) + "\n")
+    told = ("--rows", "3", "--columns", "5", "--truth", truth)
+    said = run(tmp_path / "bad.csv", *told, tmp_path / "b.npz")
+    assert "those that were left out, of which 3 is the first, count too" in said
+    shapes = [
+        f.truth[0].shape for f in recording(path=tmp_path / "b.npz", report=Report()) if f.truth
+    ]
+    assert [s.x_cm for s in shapes if isinstance(s, Circle)] == [0, 1, 2, 4, 5, 6, 7]
+    run(tmp_path / "bad.csv", *told, "--frames", "4", tmp_path / "c.npz")
+    run(tmp_path / "bad.csv", *told, "--with", "skip=2", tmp_path / "d.npz")
+    shapes = [
+        f.truth[0].shape for f in recording(path=tmp_path / "d.npz", report=Report()) if f.truth
+    ]
+    assert [s.x_cm for s in shapes if isinstance(s, Circle)] == [2, 4, 5, 6, 7]
+
+
+def test_truth_that_replaces_another_is_told(tmp_path: Path) -> None:
+    frames = [
+        Frame.of(
+            np.ones((3, 5)), index=k, truth=(TrueObject(Circle(1.0, 2.0, 3.0)),) if k else None
+        )
+        for k in range(6)
+    ]
+    write_npz(tmp_path / "a.npz", frames)
+    truth = tmp_path / "truth.csv"
+    truth.write_text("frames,kind,x_cm,y_cm,radius_cm\n0-3,circle,1,2,0.5\n")
+    said = run(tmp_path / "a.npz", tmp_path / "b.npz", "--truth", truth)
+    what = "truth.csv: replaces the truth that the recording held of"
+    assert f"{what} 5 frames; of 2 of them it says nothing\n" in said
+    said = run(tmp_path / "a.npz", tmp_path / "c.npz", "--truth", truth, "--frames", 2)
+    assert f"{what} 1 frame\n" in said
+    assert "replaces the truth" not in run(tmp_path / "b.npz", tmp_path / "d.npz")

@@ -144,3 +144,16 @@ def test_numbers_alone_are_refused_where_no_guard_has_one(hand_made):
     assert "--levels: no guard of pipeline 'ladder' that may be chosen compares" in " ".join(
         got.output.split()
     )
+
+
+@pytest.mark.slow
+def test_truth_is_counted_as_convert_counts_it(tmp_path):
+    lines = [",".join(str(c % 16 * 3 + c // 16 * (k % 3)) for c in range(256)) for k in range(6)]
+    lines[2], lines[5] = lines[2][:90], lines[5][:90]
+    (tmp_path / "bad.csv").write_text("\n".join(lines) + "\n")
+    truth = tmp_path / "truth.csv"
+    truth.write_text("frames,kind,x_cm,y_cm,radius_cm\n4-5,circle,1,2,3\n")
+    got = call("tune", "circle-3", tmp_path / "bad.csv", "--truth", truth)
+    said = " ".join(got.output.split())
+    assert "those that were left out, of which 2 is the first, count too" in said
+    assert "1 frame with a known truth" in said  # the last one, which is cut, is no frame too many

@@ -148,7 +148,8 @@ def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]
             if not n:
                 text = str(error).partition("\n")[0].partition("<")[0].rstrip()[:120]
                 raise DataError(where, f"the picture cannot be read: {text}") from error
-            reading.damaged(f"page {n}", "cannot be read; the pages before it are kept")
+            what = "cannot be read; the pages before it are kept"
+            reading.damaged(f"page {n}", what, n_frames=0)  # nobody knows how many come after it
 
 
 def _check_size(where: str, content: bytes) -> None:

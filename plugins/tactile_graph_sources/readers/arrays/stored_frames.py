@@ -35,7 +35,12 @@ def as_told(reading: Reading, frames: Iterable[Frame | FrameStack]) -> Iterator[
         If shape, pitch, origin or quantity cannot be true, or are not what the settings say.
     """
     reading.is_own = True
+    due = reading.place
     for stored in _joined(frames):
+        first = int(stored.index[0]) if isinstance(stored, FrameStack) else stored.index
+        if not reading.told.sensor:  # or it is not known whose the lost ones were
+            reading.place += max(first - due, 0)
+        due = first + (len(stored) if isinstance(stored, FrameStack) else 1)
         if isinstance(stored, FrameStack):
             yield from _stack_as_told(reading, stored)
             continue

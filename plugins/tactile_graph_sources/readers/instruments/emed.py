@@ -146,7 +146,9 @@ def _end_page(reading: Reading, state: _State) -> None:
         elif any(b != a + 1 for a, b in pairwise(numbers)):
             page.wrong = page.wrong or f"{what} numbers that are not consecutive"
     if page.wrong:
-        reading.damaged(page.line, f"picture {state.number}: {page.wrong}")
+        first = state.broken[0] != state.number  # of the pages of a picture
+        what = f"picture {state.number}: {page.wrong}"
+        reading.damaged(page.line, what, n_frames=int(first))
         state.broken = (state.number, frozenset(page.columns))
         return
     if state.pages and state.picture == state.number and _overlap(page, state.pages):
@@ -178,7 +180,13 @@ def _flush(reading: Reading, state: _State) -> Iterator[Frame]:
             page.columns[0] - 1 : page.columns[0] - 1 + len(page.columns),
         ] = page.values
     time_s = None if state.seconds is None else (state.picture - 1) * state.seconds
-    frame = reading.frame(values, pitch_cm=state.pitch_cm, quantity="kilopascal", time_s=time_s)
+    frame = reading.frame(
+        values,
+        pitch_cm=state.pitch_cm,
+        quantity="kilopascal",
+        time_s=time_s,
+        own_number=state.picture,
+    )
     _check_force(reading, name, pages, values, state.pitch_cm)
     yield frame
 

@@ -76,7 +76,8 @@ def read(reading: Reading) -> Iterator[Frame]:
                 break
         elif text.strip(_BLANKS):
             if block is None:
-                reading.damaged(number, f"expected a Frame line, got {text[:40]!r}")
+                what = f"expected a Frame line, got {text[:40]!r}"
+                reading.damaged(number, what, n_frames=0)
             else:
                 block.rows.append((number, text))
     yield from _flush(reading, header, block)
@@ -140,6 +141,7 @@ def _flush(reading: Reading, header: _Header, block: _Block | None) -> Iterator[
         quantity=header.quantity,
         factor=header.factor,
         time_s=block.time_s,
+        own_number=block.number,
     )
     _check_sum(reading, block, frame, header.quantity)
     yield frame

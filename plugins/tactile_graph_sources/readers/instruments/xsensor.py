@@ -89,7 +89,8 @@ def _keyed(reading: Reading, state: _State, number: int, key: str, value: str) -
         state.time_s = None
         if state.frame is None:
             what = f"FRAME is followed by {value[:40]!r}, not by a number"
-            reading.damaged(number, what, reading.sensors)
+            wanted = [name for name in reading.sensors if reading.wants(name)]
+            reading.damaged(number, what, reading.sensors, n_frames=max(len(wanted), 1))
     elif key == "SENSOR":
         state.sensor = _Sensor(number, value) if state.frame is not None else None
     elif key == "Time" and state.sensor is None:
@@ -141,6 +142,7 @@ def _flush(reading: Reading, dialect: Dialect, state: _State) -> Iterator[Frame]
         factor=factor,
         time_s=state.time_s,
         sensor=sensor.name,
+        own_number=state.frame,
     )
 
 

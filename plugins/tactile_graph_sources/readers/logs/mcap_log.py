@@ -7,6 +7,7 @@ libraries of types are not needed for these.
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -18,7 +19,7 @@ from tactile_graph_sources.readers.logs.cdr import decoder_of
 from tactile_graph_sources.readers.logs.mcap_chunks import check_chunks
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
-from tactile_graph_sources.readers.text.json_stack import Entries, entries_of, frames_of
+from tactile_graph_sources.readers.text.json_stack import Damage, Entries, entries_of, frames_of
 from tactile_graph_sources.readers.words.preamble import Described
 
 _MARK = b"\x89MCAP0\r\n"
@@ -39,7 +40,7 @@ def read(reading: Reading) -> Iterator[Frame]:
         meant.
     """
     where = str(reading.path)
-    topics = _topics(reading)
+    topics, end = _topics(reading)
     asked = reading.told.sensor
     readable = {name: topic for name, topic in topics.items() if topic.readable}
     fit = {n: t for n, t in readable.items() if asked.lower() in n.lower()}
@@ -54,11 +55,10 @@ def read(reading: Reading) -> Iterator[Frame]:
         raise DataError(where, f"no topic that is read; its topics: {listed}")
     ((name, topic),) = fit.items()
     reading.sensors[name] = None
-    for what in topic.damage:
-        reading.damaged(name, f"a message is damaged: {what}")
+    damage = [Damage(k, name, f"a message is damaged: {what}") for k, what in topic.damage]
     entries = topic.entries(where)
     why = f"topic {name} of {topic.kind}"
-    yield from frames_of(reading, entries._replace(why=f"{why}, {entries.why}"))
+    yield from frames_of(reading, entries._replace(why=f"{why}, {entries.why}"), [*damage, *end])
 
 
 class _Topic:
@@ -70,7 +70,7 @@ class _Topic:
         self._json = encoding == "json"
         self.times_s: list[float] = []
         self.values: list[Any] = []
-        self.damage: list[str] = []
+        self.damage: list[tuple[int, str]] = []
 
     @property
     def readable(self) -> bool:
@@ -82,7 +82,7 @@ class _Topic:
         try:
             value = self._decode(data)
         except ValueError as error:
-            self.damage.append(str(error))
+            self.damage.append((len(self.values), str(error)))
             return
         self.times_s.append(time_s)
         self.values.append(value)
@@ -96,7 +96,8 @@ class _Topic:
                               "time_s")  # fmt: skip
 
 
-def _topics(reading: Reading) -> dict[str, _Topic]:
+def _topics(reading: Reading) -> tuple[dict[str, _Topic], list[Damage]]:
+    """Return the topics by their names, and what the end of the file is, if it cannot be read."""
     where = str(reading.path)
     try:
         from mcap.reader import make_reader
@@ -116,8 +117,9 @@ def _topics(reading: Reading) -> dict[str, _Topic]:
         if not any(topic.values for topic in topics.values()):
             told = str(error)[:120] or type(error).__name__
             raise DataError(where, f"the MCAP file cannot be read: {told}") from error
-        reading.damaged("its end", f"cannot be read: {str(error)[:80]}")
-    return topics
+        what = f"cannot be read: {str(error)[:80]}"
+        return topics, [Damage(sys.maxsize, "its end", what, 0)]
+    return topics, []
 
 
 FORMAT = RecordingFormat("MCAP", recognises, read)

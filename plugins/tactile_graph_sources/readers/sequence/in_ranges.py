@@ -65,13 +65,14 @@ def ranges_of_recordings(path: Path | list[Path], **settings: Any) -> Ranges | N
     if len(laid) < len(found):
         return None
     ends = list(accumulate(one.n_frames for one in laid))
+    places = [0, *accumulate(one.laid.n_frames for one in laid)]
 
     def read(low: int, high: int, in_stacks: bool = False) -> Iterator[Any]:
         while low < high:
             k = bisect_right(ends, low)
             before = ends[k] - laid[k].n_frames
             end = min(high, ends[k])
-            for some in laid[k].frames(low - before, end - before, in_stacks):
+            for some in laid[k].frames(low - before, end - before, places[k], in_stacks):
                 if isinstance(some, FrameStack):
                     yield some.numbered(low)
                     low += len(some)
@@ -136,14 +137,19 @@ class _InRanges(NamedTuple):
         report.count(f"recordings read as {self.format}")
         report.counts.update(self.said.counts)
 
-    def frames(self, low: int, high: int, in_stacks: bool) -> Iterator[Frame | FrameStack]:
-        """Yield frames by number behind those left out; raises Irregular, at the end too."""
+    def frames(
+        self, low: int, high: int, place: int, in_stacks: bool
+    ) -> Iterator[Frame | FrameStack]:
+        """Yield frames by number behind those left out; raises Irregular, at the end too.
+
+        ``place`` is that of the file's first frame (`Frame.place`).
+        """
         skip, where = self.told.skip, str(self.path)
         low, high = low + skip, high + skip
         first, last = max(skip, low - BEFORE), min(high + BEHIND, self.laid.n_frames)
         report = Report()
         reading = Reading(Head(self.path, b"", self.told), self.told, report, 0, self.label)
-        reading.in_stacks = in_stacks
+        reading.in_stacks, reading.place = in_stacks, place + first
         leaps: _Watch = stacks_with_leaps_told if in_stacks else with_leaps_told
         garbage: _Watch = stacks_without_garbage if in_stacks else without_garbage
         try:

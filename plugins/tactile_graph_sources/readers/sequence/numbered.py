@@ -47,6 +47,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     kind = format_of(Head.of(folder / names[0], reading.told)).name
     reading.recognised(f"{len(names)} files in the order of their numbers, the first a {kind}")
     first: dict[str, tuple[str, tuple[int, ...]]] = {}
+    single = True
     for name in names:
         path, n = folder / name, reading.index
         reading.report.digest(str(path), sha256_of(path))
@@ -63,9 +64,11 @@ def read(reading: Reading) -> Iterator[Frame]:
                     "folder of their own",
                 )
             yield frame
-        reading.index = part.index
-        if reading.index == n and not part.first_damage:
-            reading.damaged(name, "it holds no whole frame")
+        reading.index, reading.place = part.index, part.place
+        single &= part.index <= n + 1
+        if part.index == n and not part.first_damage:
+            # Where files hold several frames each, nobody knows how many this one should.
+            reading.damaged(name, "it holds no whole frame", n_frames=int(single))
 
 
 FOLDER = RecordingFormat("folder of numbered files", recognises, read, plain=True, of_folders=True)

@@ -71,8 +71,10 @@ def read(reading: Reading) -> Iterator[Frame]:
         if is_blank(line) or is_comment(line):
             continue
         if number < layout.first_line:
-            if is_row(line) and len(fields := layout.dialect.fields(line)) != layout.width:
-                reading.damaged(number, f"{len(fields)} values, not {layout.width}")
+            if is_row(line) and (n := len(layout.dialect.fields(line))) != layout.width:
+                what = f"{n} values, not {layout.width}"
+                # A few numbers say a shape or a range, as others write them before the frames.
+                reading.damaged(number, what, n_frames=int(2 * n >= layout.width))
             continue
         frame = _frame(reading, lines, number, line) if of_sensor(layout, line) else None
         if frame is not None:
@@ -125,7 +127,8 @@ def _frame(reading: Reading, lines: _Lines, number: int, line: str) -> Frame | N
         cells = np.array(floats(texts))
         index, time_s = stamps.of(fields)
     except ValueError as error:
-        reading.damaged(number, str(error))
+        # Words among the frames are what a device had to say, and no frame.
+        reading.damaged(number, str(error), n_frames=int(is_row(line)))
         return None
     if index is not None and reading.is_repeat(number, index, f"frame {index:g}"):
         return None
@@ -137,6 +140,7 @@ def _frame(reading: Reading, lines: _Lines, number: int, line: str) -> Frame | N
         quantity=own.quantity or said.quantity,
         factor=1.0 if own.quantity else said.factor,
         time_s=time_s,
+        own_number=index,
     )
 
 

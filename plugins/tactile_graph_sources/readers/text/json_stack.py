@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -48,6 +48,16 @@ class Entries(NamedTuple):
     why: str
 
 
+class Damage(NamedTuple):
+    """What could not be read: how many entries stand before it, where, what, and of how many frames
+    it is."""
+
+    n_before: int
+    where: int | str
+    what: str
+    n_frames: int = 1
+
+
 def recognises(head: Head) -> bool:
     """Return whether the file is JSON: an object, or a list that goes on over its first line."""
     text = head.raw.removeprefix(b"\xef\xbb\xbf").lstrip()
@@ -88,13 +98,25 @@ def read(reading: Reading) -> Iterator[Frame]:
     DataError
         If the file is no JSON, holds no frames, or does not say their shape.
     """
-    content = _content(reading)
-    yield from frames_of(reading, entries_of(str(reading.path), content, reading.told.sensor))
+    damage: list[Damage] = []
+    content = _content(reading, damage)
+    yield from frames_of(
+        reading, entries_of(str(reading.path), content, reading.told.sensor), damage
+    )
 
 
-def frames_of(reading: Reading, entries: Entries) -> Iterator[Frame]:
-    """Yield the frames of what was found; raises what `read` raises."""
+def frames_of(reading: Reading, entries: Entries, damage: Sequence[Damage] = ()) -> Iterator[Frame]:
+    """Yield the frames of what was found; raises what `read` raises.
+
+    Parameters
+    ----------
+    reading : Reading
+    entries : Entries
+    damage : sequence of Damage
+        What could not be read and therefore is not among the entries.
+    """
     where = str(reading.path)
+    left = list(reversed(damage))
     arrays = [_array(v) for v in entries.values]
     shapes = Counter(a.shape for a in arrays if a is not None and a.ndim in (1, 2) and a.size)
     if not shapes:
@@ -108,6 +130,9 @@ def frames_of(reading: Reading, entries: Entries) -> Iterator[Frame]:
     entries = _without_stamps(entries)
     factor = _time_factor(reading, entries)
     for k, array in enumerate(arrays):
+        while left and left[-1].n_before <= k:
+            _, place, what, n_frames = left.pop()
+            reading.damaged(place, what, n_frames=n_frames)
         if array is None or array.shape != usual:
             got = "no numbers" if array is None else f"shape {array.shape}"
             reading.damaged(f"frame {k}", f"{got}, not {usual}")
@@ -120,9 +145,11 @@ def frames_of(reading: Reading, entries: Entries) -> Iterator[Frame]:
             factor=entries.said.factor,
             time_s=_time(entries, k, factor),
         )
+    for _, place, what, n_frames in reversed(left):
+        reading.damaged(place, what, n_frames=n_frames)
 
 
-def _content(reading: Reading) -> Any:
+def _content(reading: Reading, damage: list[Damage]) -> Any:
     where = str(reading.path)
     try:
         text = reading.path.read_text(encoding=reading.head.encoding)
@@ -130,7 +157,7 @@ def _content(reading: Reading) -> Any:
         raise DataError(where, f"its text is damaged: {error}") from error
     _check_size(where, text)
     whole = _parsed(text)
-    return _by_lines(reading, text) if whole is None else whole
+    return _by_lines(reading, text, damage) if whole is None else whole
 
 
 def _check_size(where: str, text: str) -> None:
@@ -147,21 +174,21 @@ def _check_size(where: str, text: str) -> None:
         raise DataError(where, f"{told} a list")
 
 
-def _by_lines(reading: Reading, text: str) -> list[Any]:
+def _by_lines(reading: Reading, text: str, damage: list[Damage]) -> list[Any]:
     """Return what each line holds; lines that hold no object and no list are damaged."""
     lines: list[Any] = []
-    n_damaged = 0
     for number, line in enumerate(text.splitlines(), 1):
         if line.strip():
             entry = _parsed(line)
             if isinstance(entry, dict | list):
                 lines.append(entry)
                 continue
-            n_damaged += 1
-            reading.damaged(number, "no JSON" if entry is None else "no object and no list")
-            if n_damaged > MOST_DAMAGED + len(lines):
+            what = "no JSON" if entry is None else "no object and no list"
+            # Where one sensor of several is asked for, nobody knows whose the line was.
+            damage.append(Damage(len(lines), number, what, 0 if reading.told.sensor else 1))
+            if len(damage) > MOST_DAMAGED + len(lines):
                 break
-    if not lines or n_damaged > MOST_DAMAGED + len(lines):
+    if not lines or len(damage) > MOST_DAMAGED + len(lines):
         told = "it begins as JSON does, and is none, as a whole or by lines"
         if is_cut_off(text):
             told += (

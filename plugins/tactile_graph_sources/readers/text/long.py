@@ -86,6 +86,7 @@ def read(reading: Reading) -> Iterator[Frame]:
             pitch_cm=said.pitch_cm,
             quantity=said.quantity,
             factor=said.factor,
+            own_number=float(cells[mine[0], 0]) if "frame" in layout.roles else None,
         )
 
 
@@ -142,7 +143,8 @@ def _without_strays(
         beyond = found[(found > usual.max() + far) | (found < min(usual.min(), 0.0) - far)]
         kept &= ~np.isin(cells[:, axis], beyond)
     for number in lines[~kept]:
-        reading.damaged(int(number), "no cell: its row or column is far beyond all others")
+        what = "no cell: its row or column is far beyond all others"
+        reading.damaged(int(number), what, n_frames=0)
     return cells[kept], lines[kept]
 
 
@@ -164,9 +166,8 @@ def _from_zero(
     for axis in {2, 3} - signed.keys():
         kept &= cells[:, axis] >= 0.0
     for number in lines[~kept]:
-        reading.damaged(
-            int(number), "no cell: its row or column is below 0, those of others are not"
-        )
+        what = "no cell: its row or column is below 0, those of others are not"
+        reading.damaged(int(number), what, n_frames=0)
     cells, lines = cells[kept], lines[kept]
     if signed:
         row, column = (signed.get(axis, min(1.0, cells[:, axis].min())) for axis in (2, 3))
@@ -239,7 +240,8 @@ def _first_of_each(
     if not on_grid.all():
         stray = int(np.flatnonzero(~on_grid)[0])
         n = int(np.count_nonzero(~on_grid))
-        reading.damaged(int(lines[stray]), f"{name}: {n} cells outside the told shape")
+        what = f"{name}: {n} cells outside the told shape"
+        reading.damaged(int(lines[stray]), what, n_frames=0)
     candidates = np.flatnonzero(on_grid)
     _, first = np.unique(place[candidates], return_index=True)
     if len(first) < len(candidates):
@@ -340,11 +342,12 @@ def _one_by_one(
             timed = "time" in layout.roles or "clock" in layout.roles
             time_s = stamps.time_s(fields) if timed else None
         except ValueError as error:
-            reading.damaged(number, f"no cell: {str(error)[:80]}")
+            reading.damaged(number, f"no cell: {str(error)[:80]}", n_frames=0)
             continue
         cell = np.array([[index, np.nan if time_s is None else time_s, *values]])
         if not _are_places(layout, cell):
-            reading.damaged(number, f"no cell: {line.strip()[:60]!r} names no place on a pad")
+            what = f"no cell: {line.strip()[:60]!r} names no place on a pad"
+            reading.damaged(number, what, n_frames=0)
         else:
             cells.append(cell)
             numbers.append(number)

@@ -167,6 +167,7 @@ def _flush(reading: Reading, layout: Layout, matrix: _Matrix, times: _Times) -> 
             quantity=said.quantity,
             factor=said.factor,
             time_s=times.of(matrix.stamp, n),
+            own_number=index,
         )
 
 

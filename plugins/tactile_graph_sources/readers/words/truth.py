@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from tactile_graph.errors import UsageError, one_of
-from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle, Shape, TrueObject
+from tactile_graph.errors import UsageError, did_you_mean, one_of
+from tactile_graph.wires import (
+    LARGEST,
+    Circle,
+    Ellipse,
+    Polygon,
+    Rectangle,
+    Shape,
+    TrueObject,
+)
 from tactile_graph.wires.measure import Measured
 
 _FIELDS: dict[str, tuple[type[Circle | Ellipse | Rectangle], tuple[str, ...]]] = {
@@ -17,6 +26,17 @@ _FIELDS: dict[str, tuple[type[Circle | Ellipse | Rectangle], tuple[str, ...]]] =
     "ellipse": (Ellipse, ("x_cm", "y_cm", "semi_major_cm", "semi_minor_cm", "angle_rad")),
     "rectangle": (Rectangle, ("x_cm", "y_cm", "length_cm", "breadth_cm", "angle_rad")),
 }
+_KEYS = {
+    "kind",
+    "weight_g",
+    "name",
+    "xy_cm",
+    *(f for _, fields in _FIELDS.values() for f in fields),
+}
+_FORM = 'such as [[{"kind": "circle", "x_cm": 9, "y_cm": 11, "radius_cm": 6}], [], null]'
+ANYWHERE = ("x_cm", "y_cm", "angle_rad")
+"""Numbers that may be 0 or less."""
+MOST_SHOWN = 60
 Truth = tuple[TrueObject, ...] | None
 
 
@@ -28,20 +48,6 @@ def _shape_to_json(shape: Shape | Measured) -> dict[str, Any]:
         told = one_of([*_FIELDS, "polygon"])
         raise UsageError(f"a true {type(shape).__name__} cannot be written; what can is: {told}")
     return {"kind": kind, **{f: float(getattr(shape, f)) for f in _FIELDS[kind][1]}}
-
-
-def _shape_from_json(entry: dict[str, Any]) -> Shape:
-    kind = entry["kind"]
-    if kind == "polygon":
-        corners = np.array(entry["xy_cm"], dtype=np.float64)
-        if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
-            raise ValueError(f"a polygon's corners have shape {corners.shape}, not (N, 2)")
-        return Polygon(corners)
-    shape, names = _FIELDS[kind]
-    fields = {name: float(entry[name]) for name in names}
-    if not np.isfinite(list(fields.values())).all():
-        raise ValueError(f"a {kind} with a number that is not finite")
-    return shape(**fields)
 
 
 def truth_to_json(truths: Sequence[Truth]) -> str:
@@ -65,22 +71,94 @@ def truth_to_json(truths: Sequence[Truth]) -> str:
     )
 
 
-def truth_from_json(text: str) -> list[Truth]:
+def truth_from_json(text: str, by_hand: bool = False) -> list[Truth]:
     """Return the truth of frames from a JSON text.
+
+    Parameters
+    ----------
+    text : str
+    by_hand : bool
+        Whether a person wrote it: keys that nobody knows are misspelt, and a size is above 0.
 
     Raises
     ------
     ValueError
-        If the text is no list of objects of known kinds with all their fields.
+        If the text is no list of objects of known kinds with all their fields: in which frame,
+        which object of it, what is wrong, and what is right.
     """
     try:
         frames = json.loads(text)
-        return [None if f is None else tuple(_object(entry) for entry in f) for f in frames]
-    except (KeyError, TypeError, AttributeError, RecursionError, OverflowError) as error:
-        raise ValueError(f"no list of true objects: {error!r}") from error
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"is no JSON: {error}") from error
+    if not isinstance(frames, list):
+        raise ValueError(
+            f"must be a list with an entry for each frame, got {_got(frames)}; {_FORM}"
+        )
+    return [_of_frame(f"frame {k}", frame, by_hand) for k, frame in enumerate(frames)]
 
 
-def _object(entry: dict[str, Any]) -> TrueObject:
+def _of_frame(where: str, frame: Any, by_hand: bool) -> Truth:
+    if frame is None:
+        return None
+    if not isinstance(frame, list):
+        told = f"{where}: must be null or a list of objects, got {_got(frame)}; {_FORM}"
+        raise ValueError(told)
+    return tuple(_object(f"{where}, object {j}", o, by_hand) for j, o in enumerate(frame))
+
+
+def _object(where: str, entry: Any, by_hand: bool) -> TrueObject:
+    if not isinstance(entry, dict):
+        raise ValueError(f"{where}: must be an object, got {_got(entry)}; {_FORM}")
+    kinds = (*_FIELDS, "polygon")
+    if "kind" not in entry:
+        others = [k for k in entry if k not in _KEYS]
+        of_it = f"; {others[0]!r} is no key" if others else ""
+        raise ValueError(f"{where}: has no 'kind' ({one_of(kinds)}){of_it}; {_FORM}")
+    kind = entry["kind"]
+    if not isinstance(kind, str) or kind not in kinds:
+        near = did_you_mean(str(kind), kinds)
+        raise ValueError(f"{where}: unknown kind {_got(kind)}, known: {one_of(kinds)}{near}")
+    needed = ("xy_cm",) if kind == "polygon" else _FIELDS[kind][1]
+    known = ("kind", *needed, "weight_g", "name")
+    unknown = [k for k in entry if k not in known] if by_hand else []
+    missing = [k for k in needed if k not in entry]
+    form = f"a {kind} has {', '.join(known)}"
+    if unknown:
+        near = did_you_mean(unknown[0], missing or known)
+        raise ValueError(f"{where}: unknown key {unknown[0]!r}; {form}{near}")
+    if missing:
+        raise ValueError(f"{where}: has no {missing[0]!r}; {form}")
     weight = entry.get("weight_g")
-    name = entry.get("name", "")
-    return TrueObject(_shape_from_json(entry), None if weight is None else float(weight), str(name))
+    grams = None if weight is None else _number(where, "weight_g", weight, by_hand)
+    name = str(entry.get("name", ""))
+    if kind == "polygon":
+        return TrueObject(_polygon(where, entry["xy_cm"]), grams, name)
+    numbers = [_number(where, key, entry[key], by_hand) for key in needed]
+    return TrueObject(_FIELDS[kind][0](*numbers), grams, name)
+
+
+def _polygon(where: str, given: Any) -> Polygon:
+    try:
+        corners = np.array(given, dtype=np.float64)
+    except (ValueError, TypeError, OverflowError):
+        corners = np.empty(0)
+    if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
+        told = f"xy_cm: must be corners, a list of pairs of numbers, got {_got(given)}"
+        raise ValueError(f"{where}: {told}")
+    return Polygon(corners)
+
+
+def _number(where: str, key: str, given: Any, by_hand: bool) -> float:
+    whole = isinstance(given, int | float) and not isinstance(given, bool)
+    number = float(given) if whole and abs(given) <= LARGEST else math.nan
+    above = by_hand and key not in ANYWHERE
+    if not math.isfinite(number) or (above and number <= 0.0):
+        needed = "a number > 0" if above else "a number"
+        raise ValueError(f"{where}: {key}: must be {needed}, got {_got(given)}")
+    return number
+
+
+def _got(given: Any) -> str:
+    """Return what was given as JSON writes it, cut where it is long."""
+    text = json.dumps(given)
+    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}…"

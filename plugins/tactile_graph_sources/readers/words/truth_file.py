@@ -5,12 +5,16 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph.foreign_text import tell
+from tactile_graph.steps.injected import Report
 from tactile_graph.wires import Circle, Ellipse, Frame, Rectangle, TrueObject
+from tactile_graph_sources.readers.words.counting import BY, By, Counting
 from tactile_graph_sources.readers.words.truth import Truth, truth_from_json
 
 SHAPES = {
@@ -18,34 +22,87 @@ SHAPES = {
     "ellipse": (Ellipse, ("x_cm", "y_cm", "semi_major_cm", "semi_minor_cm", "angle_deg")),
     "rectangle": (Rectangle, ("x_cm", "y_cm", "length_cm", "breadth_cm", "angle_deg")),
 }
-COLUMNS = ("frames", "kind", *sorted({f for _, fields in SHAPES.values() for f in fields}),
+COLUMNS = (*BY, "kind", *sorted({f for _, fields in SHAPES.values() for f in fields}),
            "weight_g", "name")  # fmt: skip
 MOST_BYTES = 1 << 28
+MOST_DIGITS = 12
+"""Of a frame's number."""
 Spans = list[tuple[range | None, TrueObject | None]]
 
 
-def with_truth(frames: Iterator[Frame], path: Path) -> Iterator[Frame]:
-    """Yield the frames with the truth that a file holds; what they carried before is replaced.
+class _Table(NamedTuple):
+    """A table of truth: how it counts frames, and what lies in which; None is all, and nothing."""
+
+    by: By
+    spans: Spans
+
+
+def with_truth(
+    frames: Iterator[Frame], path: Path, report: Report | None = None
+) -> Generator[Frame, None, None]:
+    """Yield the frames with the truth that a file holds, instead of what the recording held.
+
+    Frames are counted as they stand in the recording (`Frame.place`), so that one which was left
+    out, by ``skip`` too, keeps its number; what may surprise about that is told on stderr. So is of
+    how many frames the recording held a truth, at the end or when this is closed.
 
     Parameters
     ----------
     frames : iterator of Frame
+        All of the recording, from its first on.
     path : Path
         ``.json``: a list with, for each frame, null or a list of objects (as in our ``.npz``).
         Anything else: a table with a header, an object a line. Its column ``frames`` says in
         which frames it lies (``7``, ``10-25``, or ``all``), ``kind`` what it is; a line of kind
         ``none`` says that nothing lies there. Lengths are in cm, angles counter-clockwise in
-        degrees.
+        degrees. Named ``numbers`` instead of ``frames`` the column counts by the recording's own
+        numbers, named ``places`` by places whatever these say.
+    report : Report, optional
+        That of the recording, which tells how many frames it holds.
 
     Raises
     ------
     DataError
-        If the file cannot be understood, or speaks of frames that are not there.
+        If the file cannot be understood, speaks of frames that are not there, or may mean others.
     """
+    replaced = _Replaced()
+    kept = replaced.watch(frames)
     if path.suffix.lower() == ".json":
-        yield from _by_list(frames, _listed(path), path)
+        attached = _by_list(kept, _listed(path), path, report)
     else:
-        yield from _by_spans(frames, _spans(path), path)
+        attached = _by_spans(kept, _spans(path), path, report)
+    try:
+        for frame in attached:
+            replaced.n_unknown += replaced.was_known and frame.truth is None
+            yield frame
+    except GeneratorExit:  # who takes them has enough
+        replaced.tell(str(path))
+        raise
+    replaced.tell(str(path))
+
+
+class _Replaced:
+    """Counts frames whose truth the recording held, and of which the file says nothing."""
+
+    def __init__(self) -> None:
+        self.n = self.n_unknown = 0
+        self.was_known = False
+
+    def watch(self, frames: Iterator[Frame]) -> Iterator[Frame]:
+        for frame in frames:
+            self.was_known = frame.truth is not None
+            self.n += self.was_known
+            yield frame
+
+    def tell(self, path: str) -> None:
+        if self.n:
+            told = f"{path}: replaces the truth that the recording held of {_frames(self.n)}"
+            of_it = f"; of {self.n_unknown} of them it says nothing" if self.n_unknown else ""
+            tell(told + of_it)
+
+
+def _frames(n: int) -> str:
+    return f"{n} frame{'s' if n != 1 else ''}"
 
 
 def _text(path: Path) -> str:
@@ -61,73 +118,152 @@ def _text(path: Path) -> str:
 
 def _listed(path: Path) -> list[Truth]:
     try:
-        return truth_from_json(_text(path))
+        return truth_from_json(_text(path), by_hand=True)
     except ValueError as error:
         raise DataError(str(path), str(error)) from error
 
 
-def _by_list(frames: Iterator[Frame], truths: list[Truth], path: Path) -> Iterator[Frame]:
-    n = 0
+def _by_list(
+    frames: Iterator[Frame], truths: list[Truth], path: Path, report: Report | None
+) -> Iterator[Frame]:
+    counting, n = Counting(str(path), "places"), len(truths)
     for frame in frames:
-        if n >= len(truths):
-            raise DataError(str(path), f"holds the truth of {len(truths)} frames, there are more")
-        yield replace(frame, truth=truths[n])
-        n += 1
-    if n < len(truths):
-        raise DataError(str(path), f"holds the truth of {len(truths)} frames, there are {n}")
+        place = counting.of(frame)
+        if place >= n:
+            raise DataError(str(path), f"holds the truth of {n} frames, there are more")
+        yield replace(frame, truth=truths[place])
+    held = _n_places(counting, report)
+    if n != held:
+        way_out = (
+            "; the recording numbers its frames itself: in a table, the column 'numbers' counts by "
+            "these"
+        )
+        told = f"holds the truth of {n} frames, there are {held}, those that were left out too"
+        raise DataError(str(path), told + (way_out if counting.numbers_itself else ""))
 
 
-def _by_spans(frames: Iterator[Frame], spans: Spans, path: Path) -> Iterator[Frame]:
-    last = -1
+def _by_spans(
+    frames: Iterator[Frame], table: _Table, path: Path, report: Report | None
+) -> Iterator[Frame]:
+    counting, spans = Counting(str(path), table.by), table.spans
+    beyond = max((span.stop - 1 for span, _ in spans if span is not None), default=-1)
     for frame in frames:
-        last = frame.index
-        lie = [o for span, o in spans if span is None or frame.index in span]
+        number = counting.of(frame) if beyond >= 0 else 0
+        lie = [o for span, o in spans if span is None or number in span]
         known = tuple(o for o in lie if o is not None)
         yield replace(frame, truth=known if lie else None)
-    beyond = max((span.stop - 1 for span, _ in spans if span is not None), default=-1)
-    if beyond > last:
-        raise DataError(str(path), f"speaks of frame {beyond}, the last one is {last}")
+    if beyond < 0:
+        return
+    if table.by == "numbers" and beyond > counting.last:
+        told = f"speaks of frame {beyond}, the recording's own numbers end at {counting.last}"
+        raise DataError(str(path), told)
+    last = _n_places(counting, report) - 1
+    if table.by != "numbers" and beyond > last:
+        told = f"speaks of frame {beyond}, the last one is {last}, counted from 0"
+        raise DataError(str(path), told)
 
 
-def _spans(path: Path) -> Spans:
+def _n_places(counting: Counting, report: Report | None) -> int:
+    """Return how many frames the recording holds; those left out at its end its report tells."""
+    told = None if report is None else report.n_places
+    return max(counting.last + 1, told or 0)
+
+
+def _spans(path: Path) -> _Table:
     text = _text(path)
     first = text.partition("\n")[0]
     separator = next((s for s in (";", "\t") if s in first), ",")
     rows = csv.reader(io.StringIO(text), delimiter=separator)
     header = [n.strip().lower() for n in next(rows, [])]
-    for name in header:
-        if name not in COLUMNS:
-            near = did_you_mean(name, COLUMNS)
-            raise DataError(f"{path}:1", f"no column {name!r}; known: {', '.join(COLUMNS)}{near}")
-    if not {"frames", "kind"} <= set(header):
-        raise DataError(f"{path}:1", "a header with 'frames' and 'kind' is needed")
+    by = _checked_header(f"{path}:1", header)
     spans: Spans = []
+    lines: list[int] = []
     for fields in rows:
         if any(f.strip() for f in fields):
             where = f"{path}:{rows.line_num}"
-            row = dict(zip(header, (f.strip() for f in fields), strict=False))
-            spans.append((_span(where, row["frames"]), _object(where, row)))
-    return spans
+            row = _row(where, header, [f.strip() for f in fields])
+            spans.append((_span(where, by, row[by]), _object(where, row)))
+            lines.append(rows.line_num)
+    if not spans:
+        told = "a header and no line below it; each line says what lies in which frames"
+        raise DataError(str(path), told)
+    _refuse_contradictions(path, spans, lines)
+    return _Table(by, spans)
 
 
-def _span(where: str, text: str) -> range | None:
+def _row(where: str, header: list[str], fields: list[str]) -> dict[str, str]:
+    """Return a line's fields by the names of their columns; those that are not there are empty."""
+    n = len(header)
+    if any(fields[n:]):
+        raise DataError(
+            where,
+            f"{len(fields)} fields, the header names {n}; decimal commas need ';' or tabs between "
+            "the columns, in all lines",
+        )
+    return dict(zip(header, fields[:n] + [""] * (n - len(fields)), strict=True))
+
+
+def _refuse_contradictions(path: Path, spans: Spans, lines: list[int]) -> None:
+    """Refuse a frame of which one line says that nothing lies there, and another that something."""
+    ends = {False: (-1, 0), True: (-1, 0)}  # of frames said to be empty, and not: up to, by line
+    whole = range(10**MOST_DIGITS)
+    said = [(span or whole, o is not None, n) for (span, o), n in zip(spans, lines, strict=True)]
+    for span, holds, line in sorted(said, key=lambda one: one[0].start):
+        stop, other = ends[not holds]
+        if span.start < stop:
+            what = "an object lies there" if holds else "nothing does"
+            raise DataError(
+                f"{path}:{line}",
+                f"{what} in frame {span.start}, and line {other} says the opposite; keep one",
+            )
+        ends[holds] = max(ends[holds], (span.stop, line))
+
+
+def _checked_header(where: str, header: list[str]) -> By:
+    """Return how a table counts its frames, by its header."""
+    for name in header:
+        if name not in COLUMNS:
+            near = did_you_mean(name, COLUMNS)
+            raise DataError(where, f"no column {name!r}; known: {', '.join(COLUMNS)}{near}")
+        if header.count(name) > 1:
+            first, second = [k for k, n in enumerate(header, 1) if n == name][:2]
+            told = f"columns {first} and {second} are both {name!r}; keep one of them"
+            raise DataError(where, told)
+    by = [name for name in BY if name in header]
+    if not by or "kind" not in header:
+        raise DataError(where, "a header with 'frames' and 'kind' is needed")
+    if len(by) > 1:
+        told = f"{' and '.join(map(repr, by))} both say which frames are meant; keep one of them"
+        raise DataError(where, told)
+    return by[0]
+
+
+def _span(where: str, by: By, text: str) -> range | None:
     if text in ("all", "*"):
         return None
     first, dash, last = (p.strip() for p in text.partition("-"))
     last = last if dash else first
-    if not (first.isdecimal() and last.isdecimal() and int(first[:9]) <= int(last[:9])):
-        raise DataError(where, f"frames: must be such as 7, 10-25 or all, got {text!r}")
-    return range(int(first[:9]), int(last[:9]) + 1)
+    whole = all(p.isdecimal() and len(p) <= MOST_DIGITS for p in (first, last))
+    if not whole or int(first) > int(last):
+        raise DataError(where, f"{by}: must be such as 7, 10-25 or all, got {text!r}")
+    return range(int(first), int(last) + 1)
 
 
 def _object(where: str, row: Mapping[str, str]) -> TrueObject | None:
     kind = row.get("kind", "").lower()
-    if kind == "none":
+    known = (*SHAPES, "none")
+    if kind not in known:
+        told = f"unknown kind {kind!r}, known: {one_of(known)}{did_you_mean(kind, known)}"
+        raise DataError(where, told)
+    shape, names = SHAPES.get(kind, (None, ()))
+    about = (*BY, "kind", "name") if shape is None else (*BY, "kind", *names, "weight_g", "name")
+    for name, text in row.items():
+        if text and name not in about:
+            has = f"kind {kind!r} has no {name}, got {text!r}"
+            way = "decimal commas need ';' or tabs between the columns" if names else "leave it out"
+            raise DataError(where, f"{has}; {way}")
+    if shape is None:
         return None
-    if kind not in SHAPES:
-        known = one_of((*SHAPES, "none"))
-        raise DataError(where, f"unknown kind {kind!r}, known: {known}{did_you_mean(kind, SHAPES)}")
-    shape, names = SHAPES[kind]
     numbers = [_number(where, name, row.get(name, "")) for name in names]
     if names[-1] == "angle_deg":
         numbers[-1] = math.radians(numbers[-1])
