@@ -13,6 +13,7 @@ from tactile_graph import Pipeline
 from tactile_graph.errors import UsageError, did_you_mean, one_of
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.score.answers import answers_of
+from tactile_graph_tune.apart import without_seen
 from tactile_graph_tune.choices.declared import Declared, Place, declared
 from tactile_graph_tune.request import Request
 from tactile_graph_tune.search.cascade import Cascade, Order, Predicted, bound
@@ -118,8 +119,12 @@ def searched(
 ) -> Tuning:
     """Return what the search found; parameters and errors as of `tuner.tune`."""
     judged = _judged(request)
-    every, n_apart = _known(frames, held_out)
-    split = split_of(every, n_apart, request.seed)
+    given, apart = _known(frames, held_out)
+    other = without_seen(given, apart)
+    every = [*given, *other]
+    split = split_of(every, len(other), request.seed)
+    if seen := len(apart) - len(other):
+        split = split._replace(how=f"{split.how}, less {seen} of their frames that choose, too")
     _check_objects(every, split)
     weights = weights_of(every, request.shares, (split.choosing, split.reporting))
     variants = _variants(
@@ -171,8 +176,8 @@ def _means(variants: Sequence[Variant], choice: Choice, rows: Rows) -> Means:
 # -- before the search -----------------------------------------------------------------------
 
 
-def _known(frames: Sequence[Frame], held_out: Sequence[Frame]) -> tuple[list[Frame], int]:
-    """Return the frames whose truth is known, those held out last, and how many these are."""
+def _known(frames: Sequence[Frame], held_out: Sequence[Frame]) -> tuple[list[Frame], list[Frame]]:
+    """Return the frames whose truth is known, and those of them that are held out."""
     known = [f for f in frames if f.truth is not None]
     apart = [f for f in held_out if f.truth is not None]
     for given, left in ((frames, known), (held_out, apart)):
@@ -181,7 +186,7 @@ def _known(frames: Sequence[Frame], held_out: Sequence[Frame]) -> tuple[list[Fra
                 f"none of {len(given)} frames has a truth to choose by: give --truth FILE, or "
                 "recordings that hold it (docs/how-to/attach-truth.md)"
             )
-    return [*known, *apart], len(apart)
+    return known, apart
 
 
 def _check_objects(frames: Sequence[Frame], split: Split) -> None:

@@ -15,6 +15,9 @@ from tactile_graph_tune.table.record import Judged
 
 GIVEN, ALWAYS, CHOSEN = "as given", "always the best", "tuned"
 
+NOTHING_SAVED = 1e-3
+"""Share of a time below which what an oracle saves of it is rounding and no saving."""
+
 
 class Weight(NamedTuple):
     """The means of `Means`, each with its interval; of no frame, NaN."""
@@ -130,6 +133,8 @@ class Tuned:
     def share_of_saving(self, label: str = CHOSEN, over_us: float | None = None) -> float:
         """Return how much of what an oracle saves at equal error a point saves.
 
+        NaN where no oracle errs as little, or the oracle saves less than `NOTHING_SAVED`.
+
         Parameters
         ----------
         label : str
@@ -138,4 +143,5 @@ class Tuned:
         """
         whole = self.everything_us if over_us is None else over_us
         own, least = self.points[label].weight.time_us.mean, self.oracle_us(label)
-        return (whole - own) / (whole - least) if whole > least else float("nan")
+        saved = whole - least
+        return (whole - own) / saved if saved > NOTHING_SAVED * whole else float("nan")

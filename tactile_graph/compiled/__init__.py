@@ -13,6 +13,7 @@ from tactile_graph.compiled.kernel import (
     warm_up,
 )
 from tactile_graph.compiled.meanwhile import Meanwhile, answered_meanwhile
+from tactile_graph.compiled.once import made_so_far, once_made
 
 __all__ = [
     "SWITCH_AFTER_CALLS",
@@ -24,7 +25,9 @@ __all__ = [
     "compiled_as_is",
     "compiled_later",
     "compiled_twin_of",
+    "made_so_far",
     "mode",
+    "once_made",
     "plain_and_noted",
     "prepared_beside",
     "warm_up",

@@ -18,10 +18,27 @@ from typing import Any, cast
 import numba
 from numba import types
 from numba.core.dispatcher import Dispatcher
+from numba.core.event import Event, Listener, register
 from numba.core.typing.typeof import Purpose, typeof
+
+from tactile_graph.compiled.preparing import preparing
 
 TRIED = ("0.68",)
 """Versions of numba whose inner working is known to fit."""
+
+
+class _Counting(Listener):  # type: ignore[misc]  # numba tells no types
+    """Counts what numba compiles, by whichever way and for whom."""
+
+    def on_start(self, event: Event) -> None:
+        """Wait for the end."""
+
+    def on_end(self, event: Event) -> None:
+        """Count it."""
+        preparing.n_made += 1
+
+
+register("numba:compile", _Counting())
 
 
 def whole() -> bool:

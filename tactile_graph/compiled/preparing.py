@@ -67,11 +67,14 @@ class Preparing:
         Called once, when the next kernel is about to be compiled.
     helped : bool
         Whether another process compiles meanwhile.
+    n_made : int
+        How often machine code was made or loaded so far, by whoever asked for it.
     """
 
     def __init__(self) -> None:
         self.on_first: Callable[[], None] | None = None
         self.helped = False
+        self.n_made = 0
         self._name = ""
         self._total = 0
         self._done: set[int] = set()

@@ -290,6 +290,7 @@ class EntryDispatcher(CPUDispatcher):
         try:
             return super().compile(sig)
         finally:
+            preparing.n_made += 1
             self._cache.let_go()
 
     def on_disk(self, args: tuple[Any, ...]) -> bool:

@@ -13,6 +13,8 @@ from typing import Any
 import yaml
 
 from tactile_graph.errors import Mark, PipelineError, Problem, UsageError, shown
+from tactile_graph.pipeline import yaml_numbers
+from tactile_graph.pipeline.yaml_numbers import in_yaml as in_yaml
 
 Path = tuple[str | int, ...]
 MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of values
@@ -235,7 +237,7 @@ class _TooMuch(Exception):  # noqa: N818 -- never leaves this module
         self.line = line
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(yaml_numbers.Loader):
     """Counts levels, for PyYAML descends as deep as Python's stack, and values while they come."""
 
     depth = 0
@@ -284,7 +286,7 @@ def _children(node: yaml.CollectionNode) -> Iterable[yaml.Node]:
 class _Reader:
     def __init__(self, document: Document) -> None:
         self.document = document
-        self.constructor = yaml.constructor.SafeConstructor()
+        self.constructor = yaml_numbers.Constructor()
 
     def _mark(self, node: yaml.Node) -> Mark:
         return Mark(self.document.file, node.start_mark.line + 1, node.start_mark.column + 1)

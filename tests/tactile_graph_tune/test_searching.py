@@ -20,3 +20,13 @@ def test_a_truth_of_something_else_is_refused(hand_made):
     request = Request(load("ladder.yaml"), rounds=1, fields=("load.total",))
     with pytest.raises(UsageError, match="no way to an answer comes within 2 cm"):
         searched(request, others, [], lambda what, n, of: None)
+
+
+@pytest.mark.slow
+def test_frames_held_out_that_choose_too_are_left_out_and_counted(hand_made):
+    given = frames(48)
+    scaled = [replace(f, image=f.image.with_values(f.image.values * 1.5)) for f in frames(24)]
+    request = Request(load("ladder.yaml"), rounds=1, fields=("load.total",))
+    found = searched(request, given[:24], [*given[:6], *scaled], lambda what, n, of: None)
+    assert found.how == "recordings named for it, less 4 of their frames that choose, too"
+    assert len(found.split.reporting) == 26

@@ -92,9 +92,10 @@ def time_rows(comparison: Comparison) -> Iterator[Row]:
         ran, not_run = v.timeline.ran.tolist(), v.timeline.not_run.tolist()
         failed = (v.timeline.states == 3).sum(axis=1).tolist()
         for i, time_us in enumerate(v.times.per_frame_us.tolist()):
-            reused = math.isnan(time_us)
-            yield (*_frame(comparison, i), v.label, 0.0 if reused else round(time_us, 3),
-                   int(reused), ran[i], not_run[i], failed[i])  # fmt: skip
+            reused = bool(comparison.frames.reused[i])
+            spent = 0.0 if reused else "" if math.isnan(time_us) else round(time_us, 3)
+            yield (*_frame(comparison, i), v.label, spent, int(reused), ran[i], not_run[i],
+                   failed[i])  # fmt: skip
 
 
 def _frame(comparison: Comparison, position: int) -> Row:

@@ -140,7 +140,8 @@ def times(comparison: Comparison) -> Table:
         )
     note = (
         f"µs per frame: the sum of the nodes it needs; beside them {us(comparison.fixed_us)} µs "
-        "per frame for all together; run, not run: nodes per frame; ok, skipped, failed: frames"
+        "per frame for all together; by other: median over the frames of its time by the other's, "
+        "not the ratio of the medians; run, not run: nodes per frame; ok, skipped, failed: frames"
     )
     can_go = ("against", "ok", "not run", "run", "95 %")
     return Table("Times", columns, tuple(rows), note, can_go)
@@ -189,7 +190,10 @@ def evolution_lines(evolution: Evolution) -> Iterator[str]:
             unit = f" {d.unit}" if d.unit else ""
             bounds = interval if d.low is not None else ""
             yield f"  {d.quantity}: {signed(d.mean, d.unit)}{unit}{bounds}, {d.verdict}"
-    yield f"  time: × {e.time.ratio:.2f} ({signed_us(e.time.median_us)} µs a frame, medians)"
+    yield (
+        f"  time: × {e.time.ratio:.2f} ({signed_us(e.time.median_us)} µs), medians over the frames "
+        "of the time by the parent's, and less it"
+    )
 
 
 def reason_lines(comparison: Comparison, most: int = 3) -> Iterator[tuple[str, str]]:

@@ -37,8 +37,8 @@ def _step(comparison: Comparison, album: Album, e: Evolution) -> Html:
     ]
     effect = [
         *(_effect(d) for d in e.differences if d.mean is not None),
-        tag("li", f"time: × {e.time.ratio:.2f} ({signed_us(e.time.median_us)} µs a frame, "
-            "medians)"),
+        tag("li", f"time: × {e.time.ratio:.2f} ({signed_us(e.time.median_us)} µs), medians "
+            "over the frames of the time by the parent's, and less it"),
     ]  # fmt: skip
     frames = _frames(comparison, e)
     pictures = [_pictures(comparison, album, e, f) for f in frames]

@@ -7,6 +7,7 @@ is run besides.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
@@ -314,7 +315,8 @@ class _GuardLog:
         # Node by node: what both run takes the same, whatever the clock says.
         with_it, without = _spent_us(whole), _spent_us(ablated)
         more = [without[n] for n in without if n not in with_it]
-        self.saved_us.append(sum(more) - sum(with_it[n] for n in with_it if n not in without))
+        saved = sum(more) - sum(with_it[n] for n in with_it if n not in without)
+        self.saved_us.append(0.0 if math.isnan(whole.times_us[-1]) else saved)
         self.stopped.append(bool(more))
         pairs = list(zip(_asked_of(whole), _asked_of(ablated), strict=True))
         compared = [(_comparable(a), _comparable(b)) for a, b in pairs if a is not b]

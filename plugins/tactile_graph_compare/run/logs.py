@@ -40,7 +40,7 @@ class VariantLog:
     states : list of bytes
         For each frame, a code for each node, as in `records.graph.STATES`.
     times_us : list of float
-        Time of each frame; NaN where it was reused.
+        Time of each frame; NaN where it was reused, or something was made that is made once.
     last : Result
         Of the last frame, as the variant alone would have given it.
     """
@@ -57,12 +57,12 @@ class VariantLog:
         self.n_ok = self.n_skipped = self.n_failed = 0
         self.reasons: dict[tuple[str, str, str], list[Any]] = {}
 
-    def add(self, position: int, result: Result) -> dict[str, float]:
-        """Note a frame; return its worst error of each quantity."""
+    def add(self, position: int, result: Result, timed: bool = True) -> dict[str, float]:
+        """Note a frame, and its time if that is its own; return its worst errors by quantity."""
         alone = self.last = self.member.alone(result)
         self.states.append(bytes([state_of(alone.outcome_at(ref)) for ref in self._refs]))
         spent = sum(alone.times_us.values())
-        self.times_us.append(math.nan if result.reused else spent)
+        self.times_us.append(math.nan if result.reused or not timed else spent)
         self._count(alone)
         return self.scorer.add(position, result.frame, alone.outcome_at)
 
@@ -111,7 +111,7 @@ class MergedLog:
     nodes : tuple of str
         The merged nodes, each after those it reads.
     fixed_us : list of float
-        Time of each frame outside the nodes; NaN where it was reused.
+        Time of each frame outside the nodes; NaN where it was reused, or is not its own.
     """
 
     def __init__(self, plan: Plan) -> None:
@@ -127,9 +127,9 @@ class MergedLog:
         return len(self._frames)
 
     def add(self, frame: Frame, result: Result, whole_us: float) -> None:
-        """Note a frame that took so long as a whole."""
-        by_node = result.times_us
-        times = [by_node[n] for n in self.nodes]
+        """Note a frame that took so long as a whole; NaN where that was not its own."""
+        by_node, timed = result.times_us, not math.isnan(whole_us)
+        times = [by_node[n] if timed else math.nan for n in self.nodes]
         self._times_us.append(times)
         self._states.append(bytes([state_of(result.outcome(n)) for n in self.nodes]))
         self.fixed_us.append(math.nan if result.reused else whole_us - sum(times))
@@ -147,7 +147,7 @@ class MergedLog:
             mine += its
 
     def times_us(self) -> NDArray[np.float64]:
-        """Return the time of each node in each frame, shape (n_frames, n_nodes)."""
+        """Return the time of each node in each frame, shape (n_frames, n_nodes); NaN as above."""
         return np.array(self._times_us).reshape(self.n, len(self.nodes))
 
     def states(self) -> NDArray[np.uint8]:

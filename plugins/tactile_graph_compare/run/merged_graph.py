@@ -65,7 +65,7 @@ def _node(
         n_failed=int((states == 3).sum()),
         n_not_asked=int((states == 0).sum()),
         time_us=float(np.median(ran)) if ran.size else 0.0,
-        total_s=float(times_us.sum()) * 1e-6,
+        total_s=float(np.nansum(times_us)) * 1e-6,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator, Sequence
 from itertools import chain, islice
@@ -145,18 +146,41 @@ class Session:
             If the frame's quantity, shape or pitch breaks a rule of some variant's step.
         """
         self._check(frame)
-        runner = self._runner_for(frame)
-        start = time.perf_counter()
-        result = runner(frame)
-        whole_us = 1e6 * (time.perf_counter() - start)
+        result, whole_us = self._timed(frame)
+        timed = not math.isnan(whole_us)
         if self.promises.waiting:
             self.promises.check(result)
         position = self.n
-        worst = {log.prepared.label: log.add(position, result) for log in self.logs}
+        worst = {log.prepared.label: log.add(position, result, timed) for log in self.logs}
         self.chooser.add(self.first + position, result, worst, self.agreement.add(position, frame))
         self.merged_log.add(frame, result, whole_us)
         self.last = time.perf_counter()
         return result
+
+    def _timed(self, frame: Frame) -> tuple[Result, float]:
+        """Run a frame; return its result and time, without that of what is made or loaded once.
+
+        Where machine code came with the frame, the frame is run again, and the second time counts;
+        NaN where steps keep state, draw at random or write, so that it can be run once only.
+        """
+        from tactile_graph.compiled import made_so_far, once_made
+
+        runner = self._runner_for(frame)
+
+        def run() -> tuple[Result, float]:
+            start = time.perf_counter()
+            result = runner(frame)
+            return result, 1e6 * (time.perf_counter() - start)
+
+        def run_again() -> tuple[Result, float]:
+            runner.forget()
+            return run()
+
+        before = made_so_far()
+        result, whole_us = run()
+        if made_so_far() == before:
+            return result, whole_us
+        return once_made(run_again) if self.plan.repeatable else (result, math.nan)
 
     def without_state(self) -> Runner[Result]:
         """Forget what steps keep, and return what runs frames that are not noted."""

@@ -130,7 +130,7 @@ def _saving(session: Session, variants: Sequence[Variant]) -> Saving:
             owners[merged] = owners.get(merged, 0) + 1
     return Saving(
         alone_s=alone_us * 1e-6,
-        merged_s=float(session.merged_log.times_us().sum()) * 1e-6,
+        merged_s=float(np.nansum(session.merged_log.times_us())) * 1e-6,
         n_nodes_alone=sum(len(m.plan.nodes) for m in members),
         n_nodes_merged=len(session.merged_log.nodes),
         n_shared=sum(n > 1 for n in owners.values()),

@@ -38,6 +38,7 @@ from tactile_graph_likelihood.any_pad.posterior import (
     on_any_pad,
     resized,
     stretched,
+    within,
 )
 from tactile_graph_likelihood.any_pad.second_climbs import (
     among_strays,
@@ -71,7 +72,7 @@ from tactile_graph_likelihood.single.model import EVERY, MORE, Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, SPREADS, Noise
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
-from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_likelihood.single.readings import Readings, is_row
 from tactile_graph_likelihood.single.search import SAME
 
 FAINT = Pattern(1.0, 0.4, 2.5)
@@ -340,6 +341,8 @@ class AnyPad:
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
         hidden = self._hidden(its.alike, readings, len(tops))
         whole = self._on_any_pad(its, readings, evidence, pressed, hidden)
+        if is_row(readings):
+            whole = within(whole, *self.told.range_cm(readings))
         large = readings.states.size > LARGE_PAD
         if self.told.kind != RECTANGLE or self.quick or large:
             return whole
@@ -392,11 +395,12 @@ class AnyPad:
 
     def _normal(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return the normal distribution around a fit, widened by what neighbours share."""
+        row = is_row(readings)
         if part == EVEN and self.quick:
-            its = self.told.normal_around(top, self._count + 1, self._pull(readings, top))
+            its = self.told.normal_around(top, self._count + 1, self._pull(readings, top), row)
         else:
             own = 0 if part == EVEN else len(PRESSURES[part])
-            its = self.told.normal_around(top, self._count + own)
+            its = self.told.normal_around(top, self._count + own, row=row)
         return inflated(its, variance_inflation(top.fit.neighbours, readings.touched))
 
     def _pull(self, readings: Readings, top: Likeliest) -> Values:

@@ -121,6 +121,19 @@ def resized(found: AnyPadPosterior, share: float) -> AnyPadPosterior:
     return changed(found, covariance=covariance)
 
 
+def within(found: AnyPadPosterior, smallest_cm: float, largest_cm: float) -> AnyPadPosterior:
+    """Return a posterior whose mean, top and points have no sizes that there cannot be.
+
+    On a single row of cells widths are known by what there can be, and by nothing else: normal
+    distributions, and points pushed apart, reach beyond it.
+    """
+    lengths = slice(2, 2 + sizes.call(found.kind))
+    mean, points, top = found.mean.copy(), found.points.copy(), found.most_likely.copy()
+    for its in (mean[lengths], points[:, lengths], top[lengths]):
+        its.clip(smallest_cm, largest_cm, out=its)
+    return changed(found, mean=mean, points=points, most_likely=top)
+
+
 def stretched(found: AnyPadPosterior, readings: Readings) -> AnyPadPosterior:
     """Return a posterior on cells that are as high as they are, not as high as they are wide."""
     top_cm, stretch = float(readings.grid[1]), readings.stretch

@@ -22,7 +22,7 @@ from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.model import EVERY
 from tactile_graph_likelihood.single.posterior import Posterior
-from tactile_graph_likelihood.single.readings import Readings, readings_of
+from tactile_graph_likelihood.single.readings import Readings, is_row, readings_of
 
 TOUCH_SIGMAS, TOUCH_LEAST = (0.7, 0.5, 1.5), 0.1
 """Of ln gain, and the least load, in the rough fit that takes all touched elements for equally
@@ -120,7 +120,8 @@ class FootprintByOrder:
         for model in self._touch:
             top = model.likeliest(touch, attempts=EVERY)
             if top.evidence > -math.inf:
-                return order_posterior(self.model, readings, model.normal_around(top))
+                normal = model.normal_around(top, row=is_row(readings))
+                return order_posterior(self.model, readings, normal)
         raise self.model.impossible(readings)
 
     def _readings(self, image: Image, touched: Mask | None) -> Readings:

@@ -21,7 +21,8 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     variance_inflation,
 )
 from tactile_graph_likelihood.any_pad.observed import observed, uniform
-from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched
+from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, within
+from tactile_graph_likelihood.geometry.outline_prior import LARGEST, SMALLEST
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.several.fit_footprints import Footprints, Kind, SeveralSettings
 from tactile_graph_likelihood.several.joint_posterior import JointProblem
@@ -31,7 +32,7 @@ from tactile_graph_likelihood.several.scene import laid
 from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
 from tactile_graph_likelihood.single.likely import likely
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, LEAST_VOIDS, MOST_VOIDS, Noise
-from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_likelihood.single.readings import Readings, is_row
 
 COVERED = 0.95
 """Share of an element from which on it counts as covered whole."""
@@ -117,9 +118,11 @@ class LocateObjects:
         alike = unbiased(fit.neighbours, readings.touched, len(parts))
         wide = FEW_ELEMENTS * variance_inflation(alike, readings.touched)
         uneven = math.sqrt(FEW_ELEMENTS) * self._told.sigma * pitch**1.5
-        shapes = [
-            stretched(on_any_pad(part, part.log_evidence, wide, uneven), readings) for part in parts
-        ]
+        placed = [on_any_pad(part, part.log_evidence, wide, uneven) for part in parts]
+        if is_row(readings):
+            smallest_cm, largest_cm = problem.prior[SMALLEST : LARGEST + 1].tolist()
+            placed = [within(its, smallest_cm, largest_cm) for its in placed]
+        shapes = [stretched(its, readings) for its in placed]
         return Footprints(
             tuple(likely(shape) for shape in shapes),
             len(shapes),

@@ -33,7 +33,7 @@ from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.noise import Noise, NoiseTaken
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem
-from tactile_graph_likelihood.single.readings import Readings, readings_of, size_of
+from tactile_graph_likelihood.single.readings import Readings, is_row, readings_of, size_of
 from tactile_graph_likelihood.single.sample import Sample, log_volume, sample_around
 from tactile_graph_likelihood.single.search import (
     ATTEMPTS,
@@ -153,7 +153,7 @@ class Model:
         found = self._sampled(readings, problem, top.mode)
         if found.equal_points > len(top.mode.p):
             return found
-        normal = self.normal_around(top)
+        normal = self.normal_around(top, row=is_row(readings))
         return replace(found, covariance=found.covariance + normal.covariance)
 
     def likeliest(
@@ -221,7 +221,11 @@ class Model:
         return as_ellipse.call(top.mode.p) if self.kind == ELLIPSE else top.mode.p
 
     def normal_around(
-        self, top: Likeliest, count: int | None = None, pull: Values | None = None
+        self,
+        top: Likeliest,
+        count: int | None = None,
+        pull: Values | None = None,
+        row: bool = False,
     ) -> Posterior:
         """Return the posterior of a top's first numbers as if it were normal, the others known.
 
@@ -232,6 +236,8 @@ class Model:
             How many: the outline's, its load, and what of the noise comes first; all if not given.
         pull : ndarray, shape (count,), optional
             As in `normal_points`.
+        row : bool
+            Whether the readings are of one row of cells, as `is_row` tells.
         """
         n = len(top.mode.p) if count is None else count
         steps, pull = self.table_of(n)[:BLOCK], np.zeros(n) if pull is None else pull
@@ -240,6 +246,8 @@ class Model:
         likeliest, mean = p, p
         if self.kind == ELLIPSE:
             likeliest, mean, covariance = _as_ellipses(p, points, weights)
+            if row or min(mean[2], mean[3]) <= 0.0:
+                mean, covariance = _around(likeliest, mean, covariance)
         return Posterior(
             self.kind, self.corners, mean, covariance, points, weights, likeliest, top.evidence,
             float(BLOCK), *top.fit,
@@ -256,7 +264,7 @@ class Model:
                 evidence = height + log_volume.call(problem.kind, p, root)
                 fit = goodness_of_fit.call(problem, p)
                 likeliest = Likeliest(top, evidence, False, GoodnessOfFit(*fit))
-                return self.normal_around(likeliest)
+                return self.normal_around(likeliest, row=is_row(readings))
             whole = covered_around.call(problem, mode.p)
             if len(whole.runs):
                 table = table[:WIDE_POINTS]
@@ -368,6 +376,17 @@ def _as_ellipses(top: Values, points: Values, weights: Values) -> tuple[Values, 
     if quarters % 2:
         top[[2, 3]] = top[[3, 2]]
     return top, mean, covariance
+
+
+def _around(top: Values, mean: Values, covariance: Values) -> tuple[Values, Values]:
+    """Return a top in place of the mean, and the mean squares about it in place of the variance.
+
+    Where nothing holds an ellipse's shorter half axis, a normal distribution of ovals reaches far
+    over those whose half axes differ by more than there is of them: the mean of these is no
+    ellipse. The normal's own mean, which is the top, is one, as it is of rectangles.
+    """
+    off = mean - top
+    return top.copy(), covariance + np.outer(off, off)
 
 
 @lru_cache(256)

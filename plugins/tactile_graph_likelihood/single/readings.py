@@ -205,6 +205,11 @@ def _why(peak: float, least: float) -> str:
     return "no element bears a load: no outline fits"
 
 
+def is_row(readings: Readings) -> bool:
+    """Return whether the pad is a single row or column, which tells nothing of what lies across."""
+    return 1 in readings.states.shape
+
+
 def size_of(grid: Values, shape: tuple[int, ...]) -> tuple[float, float]:
     """Return width and height of a grid of so many rows and columns, between its outer edges."""
     (rows, columns), (_, _, pitch, side, *_) = shape, grid.tolist()

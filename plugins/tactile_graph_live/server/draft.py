@@ -12,6 +12,7 @@ import yaml
 from tactile_graph import Pipeline, load, loads
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, shown, text_of
 from tactile_graph.foreign_text import visible
+from tactile_graph.pipeline.document import in_yaml
 from tactile_graph_live.server.messages import Fault
 
 Settings = Mapping[str, Mapping[str, Any]]
@@ -183,8 +184,8 @@ def text_with(text: str, settings: Settings) -> str:
 
 def spelled(value: Any) -> str:
     """Return a value as YAML on one line."""
-    dumped = yaml.safe_dump(value, default_flow_style=True, width=10**9, allow_unicode=True)
-    return str(dumped).strip().removesuffix("...").strip()
+    dumped = in_yaml(value, default_flow_style=True, width=10**9, allow_unicode=True)
+    return dumped.strip().removesuffix("...").strip()
 
 
 def _with_one(text: str, node: str, setting: str, value: str) -> str:

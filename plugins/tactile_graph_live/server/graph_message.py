@@ -173,10 +173,6 @@ def _shown(value: Any, kind: str) -> Any:
 
 
 def _yaml(value: Any) -> str:
-    import yaml
+    from tactile_graph.pipeline.document import in_yaml
 
-    return (
-        str(yaml.safe_dump(value, default_flow_style=True, width=10**6))
-        .strip()
-        .removesuffix("\n...")
-    )
+    return in_yaml(value, default_flow_style=True, width=10**6).strip().removesuffix("\n...")

@@ -254,12 +254,12 @@ def write_calibration(path: str | Path, calibration: Calibration) -> None:
 
 def calibration_text(calibration: Calibration) -> str:
     """Return a calibration as the YAML text of its file, with a node of it ready for use."""
-    import yaml
+    from tactile_graph.pipeline.document import in_yaml
 
     data = _plain(asdict(calibration))
     order = ("format", "about", "reading", "units", "from_reading", "up_to", "fit", "quality")
     data = {k: data[k] for k in (*order, "points", "provenance")}
-    node = yaml.safe_dump(
+    node = in_yaml(
         _plain(calibration.force_settings()), default_flow_style=True, width=10**9
     ).strip()
     name = {"siemens": "decoupled"}.get(calibration.reading, "frame")
@@ -268,8 +268,8 @@ def calibration_text(calibration: Calibration) -> str:
         "are invalid.\n"
         f"# In a pipeline:  force: {{step: force, in: {name}, with: {node}}}\n"
     )
-    body = yaml.safe_dump(data, sort_keys=False, allow_unicode=True, default_flow_style=None,
-                          width=100)  # fmt: skip
+    body = in_yaml(data, sort_keys=False, allow_unicode=True, default_flow_style=None,
+                   width=100)  # fmt: skip
     return head + body
 
 

@@ -69,10 +69,10 @@ def write_pad(path: Path, found: LearnedPad, base: Pad | None, making: Making) -
 
 def pad_text(found: LearnedPad, base: Pad | None, making: Making) -> str:
     """Return the YAML text of a learned pad."""
-    import yaml
+    from tactile_graph.pipeline.document import in_yaml
 
     sections = _sections(found, base)
-    body = yaml.safe_dump(
+    body = in_yaml(
         _plain(sections), sort_keys=False, allow_unicode=True, default_flow_style=None, width=96
     )
     return _head(sections, making) + body

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
-import yaml
 
 from tactile_graph.cli.say import say
+from tactile_graph.pipeline.document import in_yaml
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -181,7 +181,8 @@ def _levelled(looked: Looked, works: _Works, settings: Sequence[str]) -> str:
         return ""
     path = str(looked.path)
     source = ", ".join([f"path: {json.dumps(path)}", *(s.replace("=", ": ", 1) for s in settings)])
-    plain = not settings and yaml.safe_load(path) == path  # 2024-03-01 would be read as a date
+    dumped = in_yaml(path, width=10**9, allow_unicode=True).removesuffix("\n...\n")
+    plain = not settings and dumped == path  # 2024-03-01 would be read as a date
     value = path if plain else f"{{{source}}}"
     told = "".join(f" --with {shlex.quote(s)}" for s in settings)
     setting = shlex.quote(f"{works.levels[name]}.noise_of={value}")

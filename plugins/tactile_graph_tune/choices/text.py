@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import yaml
+from tactile_graph.pipeline.document import in_yaml
 
 WIDTH = 98
 
@@ -44,7 +44,5 @@ def _comment(text: str, indent: str) -> Iterator[str]:
 
 
 def _flow(value: Any) -> str:
-    text: str = yaml.safe_dump(
-        value, default_flow_style=True, width=10**6, sort_keys=False, allow_unicode=True
-    )
+    text = in_yaml(value, default_flow_style=True, width=10**6, sort_keys=False, allow_unicode=True)
     return text.removesuffix("\n").removesuffix("\n...").rstrip()

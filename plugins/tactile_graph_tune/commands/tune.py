@@ -113,12 +113,14 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
     from tactile_graph.cli.interrupt import Interrupts
     from tactile_graph.cli.output.progress import Bar
     from tactile_graph.cli.terminal import console
+    from tactile_graph_tune.apart import check_recordings
     from tactile_graph_tune.request import Request, parse_free
     from tactile_graph_tune.shares import parse_share
     from tactile_graph_tune.tuner import tune as tuned_of
 
     asked = _Options(**options)
     _check_files(asked)
+    check_recordings(recordings, asked.held_out)
     free = tuple(parse_free(text) for text in asked.free)
     shares = tuple(parse_share(text) for text in asked.shares)
     opened = open_pipeline(

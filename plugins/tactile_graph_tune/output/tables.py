@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from tactile_graph_compare.output.tables import Table
@@ -24,10 +25,15 @@ def heading(tuned: Tuned) -> str:
 def verdict(tuned: Tuned) -> str:
     """Return what came of it, in a sentence."""
     ratio, share = tuned.ratio, tuned.share_of_saving()
-    told = f"{100 * share:.0f} % of what an oracle saves" if share == share else "no oracle to tell"
+    if share == share:
+        told = f"it saves {100 * share:.0f} % of what an oracle saves at its error"
+    elif math.isnan(tuned.oracle_us()):
+        told = "no oracle errs as little, to tell what could be saved"
+    else:
+        told = "at its error an oracle saves nothing either"
     return (
         f"tuned takes {ratio.mean:.2f} of the time as given ({ratio.low:.2f} to {ratio.high:.2f}), "
-        f"{tuned.difference.told(tuned.judged.unit)}; it saves {told} at its error"
+        f"{tuned.difference.told(tuned.judged.unit)}; {told}"
     )
 
 
@@ -60,10 +66,11 @@ def points_table(tuned: Tuned) -> Table:
         rows.append((label, f"{time_us.mean:.3g}", _bounds(time_us), predicted,
                      f"{error.mean:.3g}", _bounds(error), _share(missed.mean), _share(false.mean),
                      _share(tuned.share_of_saving(label))))  # fmt: skip
-    own = tuned.points[CHOSEN].weight
-    rows.append(("everything", "", "", f"{tuned.everything_us:.3g}", "", "", "", "", "0 %"))
+    own, known = tuned.points[CHOSEN].weight, tuned.share_of_saving() == tuned.share_of_saving()
+    none, all_of_it = ("0 %", "100 %") if known else ("", "")
+    rows.append(("everything", "", "", f"{tuned.everything_us:.3g}", "", "", "", "", none))
     rows.append(("oracle, error as tuned", "", "", f"{tuned.oracle_us():.3g}",
-                 f"{own.error.mean:.3g}", "", _share(own.missed.mean), "", "100 %"))  # fmt: skip
+                 f"{own.error.mean:.3g}", "", _share(own.missed.mean), "", all_of_it))  # fmt: skip
     price = f"{judged.price:g} {judged.unit}".rstrip()
     note = (
         "µs a frame: run and timed as a whole, median of rounds; predicted: from the table of what "
@@ -71,7 +78,7 @@ def points_table(tuned: Tuned) -> Table:
         f"without an answer within {price}, each counted as {price}; false: share of the frames "
         "where nothing lies that are answered; always the best: the rung of least error in every "
         "frame, nothing guarded; of the saving: of what an oracle that knows each frame's errors "
-        "saves at the same error and misses, against skipping nothing"
+        "saves at the same error and misses, against skipping nothing; empty where that is nothing"
     )
     return Table("Time and error", columns, tuple(rows), note, ("95 %  ", "95 %", "predicted"))
 

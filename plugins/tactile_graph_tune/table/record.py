@@ -5,14 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from tactile_graph import Pipeline, Result
-from tactile_graph.compiled import warm_up
+from tactile_graph.compiled import once_made, warm_up
 from tactile_graph.errors import UsageError
-from tactile_graph.inspect import NO_VALUE, Failed, NodeKind, Ref, Skipped
+from tactile_graph.inspect import NO_VALUE, Failed, NodeKind, Ref, Runner, Skipped
 from tactile_graph.many import Place, Portion, Sharing
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.variants.merge import Member, merge
@@ -115,6 +116,7 @@ class _Recorder:
     def tables(self, frames: Sequence[Frame], told: Told) -> list[Table]:
         """Return the table of each pipeline."""
         given, runner = self._given, self._runner
+        repeatable = runner.plan.repeatable  # what draws at random must not draw more often
         for frame in [] if self._warm else frames[:WARM_FRAMES]:
             runner(frame)
         self._warm = True
@@ -122,12 +124,17 @@ class _Recorder:
         rows = [_Rows(p, m, given.also, given.judged) for p, m in members]
         for k in range(given.n_rounds):
             for i, frame in enumerate(frames):
-                runner.forget()
-                result = runner(frame)
+                run = partial(_anew, runner, frame)
+                result = once_made(run) if repeatable else run()
                 for its in rows:
                     its.add(result, first=k == 0)
                 told(k * len(frames) + i + 1, given.n_rounds * len(frames))
         return [its.table(len(frames)) for its in rows]
+
+
+def _anew(runner: Runner[Result], frame: Frame) -> Result:
+    runner.forget()
+    return runner(frame)
 
 
 def _check(pipeline: Pipeline) -> None:

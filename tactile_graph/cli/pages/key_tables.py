@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-import yaml
+from tactile_graph.pipeline.yaml_numbers import in_yaml as dumped
 
 Schema = dict[str, Any]
 NAMES = {"integer": "whole number", "number": "number", "string": "text",
@@ -116,5 +116,5 @@ def _default(inner: Schema) -> str:
 
 def in_yaml(value: Any) -> str:
     """Return a plain value as YAML has it in one line."""
-    text = yaml.safe_dump(value, default_flow_style=True, width=10_000, allow_unicode=True)
+    text = dumped(value, default_flow_style=True, width=10_000, allow_unicode=True)
     return text.removesuffix("\n...\n").strip()

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, get_args
 
-import yaml
-
 from tactile_graph.docstring import parameters, sections
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.wiring import assignable, public_fields
+from tactile_graph.pipeline.yaml_numbers import in_yaml as dumped
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.steps.signature import Kind, Port, Setting, Signature, strip, type_name
@@ -112,7 +111,7 @@ def _default(setting: Setting) -> str:
 
 def in_yaml(value: Any) -> str:
     """Return a value as YAML has it in one line."""
-    text = yaml.safe_dump(plain(value), default_flow_style=True, width=10_000, allow_unicode=True)
+    text = dumped(plain(value), default_flow_style=True, width=10_000, allow_unicode=True)
     return text.removesuffix("\n...\n").strip()
 
 
@@ -200,8 +199,8 @@ def made_up_use(signature: Signature) -> str:
 
 
 def _flow(body: dict[str, Any]) -> str:
-    text = yaml.safe_dump(body, default_flow_style=True, width=10_000, sort_keys=False,
-                          allow_unicode=True)  # fmt: skip
+    text = dumped(body, default_flow_style=True, width=10_000, sort_keys=False,
+                  allow_unicode=True)  # fmt: skip
     return text.strip()
 
 

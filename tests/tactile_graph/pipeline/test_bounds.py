@@ -148,7 +148,7 @@ def test_of_thousands_of_mistakes_a_hundred_are_told() -> None:
     assert "more than 100 mistakes" in str(told.value.problems[-1])
 
 
-@pytest.mark.parametrize("value", ["1" + ":59" * 400, "0b" + "1" * 1100, "9" * 1100 + ".5"])
+@pytest.mark.parametrize("value", ["!!float 1" + ":59" * 400, "0b" + "1" * 1100, "9" * 1100 + ".5"])
 def test_a_number_that_is_too_long_is_not_worked_out(value: str) -> None:
     with pytest.raises(PipelineError, match=r"a number of \d+ characters; allowed are 1000"):
         loads(f"about: {value}\n{LEAF}", registry=registry())

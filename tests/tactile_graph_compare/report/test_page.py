@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import replace
 from functools import partial
@@ -15,9 +16,11 @@ from helpers_html import Element, read_html
 from tactile_graph import Frame, loads
 from tactile_graph.foreign_text import visible
 from tactile_graph_compare import Comparison, compare
-from tactile_graph_compare.output.tables import number, us
+from tactile_graph_compare.output.export import as_json
+from tactile_graph_compare.output.tables import evolution_lines, number, us
 from tactile_graph_compare.report import strips, write_report
 from tactile_graph_compare.report.page import page
+from tactile_graph_compare.score.statistics import time_difference_of, times_of
 
 pytestmark = pytest.mark.usefixtures("hand_made")
 
@@ -53,6 +56,30 @@ def checked(comparison: Comparison) -> Element:
     assert not re.search(r"url\((?!#)", text)
     assert "@import" not in text
     return root
+
+
+def test_how_many_times_as_long_it_takes_is_the_same_everywhere() -> None:
+    found = both()
+    quick = times_of([1.0, 1.0, 10.0] * 3)
+    slow = times_of([3.0, 30.0, 11.0] * 3)  # 11 times by the medians, 3 in the middle frame
+    first, second = (
+        replace(v, times=t) for v, t in zip(found.variants, (quick, slow), strict=True)
+    )
+    time = time_difference_of(second.label, first.label, slow, quick)
+    found = replace(
+        found, variants=(first, second), time_differences=(time,),
+        lineage=tuple(replace(e, time=time) for e in found.lineage),
+    )  # fmt: skip
+    root = checked(found)
+    cards = {c.one("h3").text: c for c in root.all("article") if c.attributes["class"] == "card"}
+    assert f"{second.label} takes × 3.00" in " ".join(cards["Fastest"].text.split())
+    sections = {s.attributes["id"]: s.text for s in root.all("section")}
+    assert "× 3.00" in sections["times"]
+    assert "× 3.00" in sections["lineage"]
+    assert "× 11" not in root.text
+    assert "× 3.00" in " ".join(evolution_lines(found.lineage[0]))
+    data = json.loads(as_json(found))
+    assert data["time_differences"][0]["ratio"] == data["lineage"][0]["time_ratio"] == 3.0
 
 
 def test_it_holds_every_section_with_its_heading() -> None:
