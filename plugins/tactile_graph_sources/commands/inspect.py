@@ -12,6 +12,7 @@ import click
 import yaml
 
 from tactile_graph.cli.say import say
+from tactile_graph.cli.targets import check_targets
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -78,6 +79,7 @@ def inspect(
 
     if picture is not None and len(files) > 1:
         raise click.UsageError("--picture draws one recording; give one FILE")
+    check_targets([("--picture", picture)])
     told = reader_settings(settings)
     n_failed = 0
     for path in files:
