@@ -41,14 +41,11 @@ class Lock:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             file = self.path.open("ab")
             try:
-                _lock(file)
-            except BlockingIOError:
-                file.close()
-            except BaseException:
-                file.close()
-                raise
-            else:
-                self._file = file
+                if locked(file):
+                    self._file = file
+            finally:
+                if self._file is None:
+                    file.close()
         return self.held
 
     def release(self) -> None:
@@ -58,11 +55,43 @@ class Lock:
             self._file = None
 
 
+def locked(file: IO[bytes], at: int = 0) -> bool:
+    """Lock an open file until it is closed, if nobody holds it; return whether it is locked now.
+
+    Parameters
+    ----------
+    file : binary file
+        Open for writing.
+    at : int
+        Which byte is locked, where files are locked by bytes (Windows): others cannot read it
+        then. It need not be there.
+
+    Raises
+    ------
+    OSError
+        If its file system knows no locks.
+    """
+    try:
+        _lock(file, at)
+    except BlockingIOError:
+        return False
+    return True
+
+
+def is_locked(name: Name, at: int = 0) -> bool:
+    """Return whether another holds a file; not one that is not there, or cannot be locked."""
+    try:
+        with Path(name).open("r+b") as file:
+            return not locked(file, at)
+    except OSError:
+        return False
+
+
 if sys.platform == "win32":
     import msvcrt
 
-    def _lock(file: IO[bytes]) -> None:
-        file.seek(0)
+    def _lock(file: IO[bytes], at: int) -> None:
+        file.seek(at)
         try:
             msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
         except PermissionError as error:
@@ -71,5 +100,5 @@ if sys.platform == "win32":
 else:
     import fcntl
 
-    def _lock(file: IO[bytes]) -> None:
+    def _lock(file: IO[bytes], at: int) -> None:
         fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)

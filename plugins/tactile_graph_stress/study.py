@@ -8,16 +8,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactile_graph.errors import TactileGraphError
+from tactile_graph.errors import PipelineError, TactileGraphError
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph_stress.case import Case
 from tactile_graph_stress.cases.stress_cases import StressCases
 from tactile_graph_stress.judge import Judge
 from tactile_graph_stress.subject import Subject
-from tactile_graph_stress.trial import Trial
+from tactile_graph_stress.trial import NODE, Trial
 from tactile_graph_stress.verdict import Outcome, Verdict
 
 OFFERS = "stress_cases"
+
+
+class NotStressed(TactileGraphError):  # noqa: N818 -- what becomes of the step
+    """A step that cannot be built with its defaults, and why not."""
 
 
 @dataclass(frozen=True)
@@ -47,11 +51,20 @@ def cases_of(subject: Subject, seed: int, quick: bool) -> list[Case]:
 def stressed(
     subject: Subject, seed: int = 0, quick: bool = True, registry: Registry | None = None
 ) -> Iterator[Row]:
-    """Yield a row for each case of a subject; none if it cannot be built with its defaults."""
+    """Yield a row for each case of a subject.
+
+    Raises
+    ------
+    NotStressed
+        If it cannot be built with its defaults: two settings of which one must be given, say.
+    """
     try:
         trial = Trial(subject, seed, registry)
-    except TactileGraphError:  # two settings of which one must be given, for instance
-        return
+    except PipelineError as error:
+        told = "; ".join(p.message.removeprefix(f"node {NODE!r}: ") for p in error.problems)
+        raise NotStressed(told) from error
+    except TactileGraphError as error:
+        raise NotStressed(str(error)) from error
     judge = Judge(trial, np.random.default_rng([seed, 1]))
     for case in cases_of(subject, seed, quick):
         verdict = judge.of(case)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import types
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Union, get_args, get_origin
+from typing import Any, NamedTuple, Union, get_args, get_origin
 
 from tactile_graph.errors import TactileGraphError, UsageError
 from tactile_graph.plugins.registry import Registry
@@ -80,30 +80,41 @@ class Subject:
         }
 
 
-def subjects(registry: Registry) -> tuple[list[Subject], list[tuple[str, str]]]:
-    """Return what can be stressed, in the order of `KINDS`, and what cannot, each with the why."""
+class Left(NamedTuple):
+    """A step that is not stressed, who offers it, and why it is not."""
+
+    name: str
+    plugin: str
+    why: str
+
+    def __str__(self) -> str:
+        return f"step {self.name!r} cannot be stressed: {self.why}"
+
+
+def subjects(registry: Registry) -> tuple[list[Subject], list[Left]]:
+    """Return what can be stressed, in the order of `KINDS`, and what cannot."""
     found: list[Subject] = []
-    left: list[tuple[str, str]] = []
+    left: list[Left] = []
     for name in registry.names("steps"):
+        plugin = registry.offer("steps", name).plugin.name
         try:
             signature = registry.step(name)
         except TactileGraphError as error:
-            left.append((name, str(error)))
+            left.append(Left(name, plugin, str(error)))
             continue
-        plugin = registry.offer("steps", name).plugin.name
         mine, why = _of(name, signature, plugin, registry)
         found += mine
         if not mine:
-            left.append((name, why))
+            left.append(Left(name, plugin, why))
     return sorted(found, key=lambda s: KINDS.index(s.kind)), left
 
 
 def chosen(
-    found: list[Subject], wanted: tuple[str, ...], left: Sequence[tuple[str, str]] = ()
-) -> list[Subject]:
-    """Return the subjects of the wanted steps, kinds or plugins; all if nothing is named.
+    found: list[Subject], wanted: tuple[str, ...], left: Sequence[Left] = ()
+) -> tuple[list[Subject], list[Left]]:
+    """Return the subjects of the wanted steps, kinds or plugins, and which of these are left out.
 
-    ``left`` holds the steps that cannot be stressed, each with the why.
+    All of both if nothing is named.
 
     Raises
     ------
@@ -113,15 +124,16 @@ def chosen(
     from tactile_graph.errors import did_you_mean, one_of
 
     known = {s.name for s in found} | {s.kind for s in found} | {s.plugin for s in found}
-    why = dict(left)
+    apart = {one.name for one in left} | {one.plugin for one in left}
     for name in wanted:
-        if name not in known and name in why:
-            raise UsageError(f"step {name!r} cannot be stressed: {why[name]}")
-        if name not in known:
+        if name not in known | apart:
             hint = did_you_mean(name, known) or f"; kinds: {one_of(KINDS)}"
             raise UsageError(f"no step, kind or plugin named {name!r} can be stressed{hint}")
     names = set(wanted)
-    return [s for s in found if not names or names & {s.name, s.kind, s.plugin}]
+    return (
+        [s for s in found if not names or names & {s.name, s.kind, s.plugin}],
+        [one for one in left if not names or names & {one.name, one.plugin}],
+    )
 
 
 def _of(

@@ -22,6 +22,9 @@ from tactile_graph_stress.subject import TURNING, Subject
 
 Given = Points | Mask | Image
 
+NODE = "subject"
+"""The node of the step that is tried, in the pipeline of its own."""
+
 FORGED = ("numpy", "scipy", "skimage", "numba")
 """Packages whose own errors no step may hand on: they are not written for its user."""
 
@@ -64,7 +67,7 @@ class Trial:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             try:
-                value = self._result(_frame(given), settings or {})["subject"]
+                value = self._result(_frame(given), settings or {})[NODE]
             except PluginError as error:  # the step gave something else than it promises
                 came = Came(broke=str(error))
             except TactileGraphError as error:  # no value, or a rule of the frame or of a setting
@@ -81,8 +84,8 @@ class Trial:
         run = self._runner(settings)
         result = run(frame)
         for _ in range(MOST_WARMING * self.subject.signature.stateful):
-            outcome = result.outcome("subject")
-            if not (isinstance(outcome, Skipped) and outcome.origin == "subject"):
+            outcome = result.outcome(NODE)
+            if not (isinstance(outcome, Skipped) and outcome.origin == NODE):
                 break
             result = run(frame)
         return result
@@ -92,7 +95,7 @@ class Trial:
         if key not in self._runners or self.subject.signature.stateful:
             pipeline = self._pipeline
             if settings:
-                pipeline = pipeline.with_settings({f"subject.{k}": v for k, v in settings.items()})
+                pipeline = pipeline.with_settings({f"{NODE}.{k}": v for k, v in settings.items()})
             self._runners[key] = _checked(pipeline, pipeline.runner(seed=self._seed))
         return self._runners[key]
 
@@ -184,5 +187,5 @@ def _text(subject: Subject) -> str:
         lines.append(f"  {supplier}: {{step: {supplier}, in: {source}}}")
     into = {port: feed if wire == subject.feed else wire for port, wire in subject.wires.items()}
     ports = ", ".join(f"{port}: {wire}" for port, wire in into.items())
-    lines.append(f"  subject: {{step: {subject.name}, in: {{{ports}}}}}")
-    return "\n".join([*lines, "outputs: [subject]", ""])
+    lines.append(f"  {NODE}: {{step: {subject.name}, in: {{{ports}}}}}")
+    return "\n".join([*lines, f"outputs: [{NODE}]", ""])

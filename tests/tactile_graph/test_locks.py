@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tactile_graph.locks import Lock
+from tactile_graph.locks import Lock, is_locked, locked
 
 HOLDER = """
 import sys
@@ -39,5 +39,18 @@ def test_a_process_that_dies_leaves_it_free(tmp_path: Path) -> None:
         assert holder.stdout.readline().strip() == b"True"
         assert not lock.take()
         holder.kill()
+    assert lock.take()
+    lock.release()
+
+
+def test_whether_a_file_is_locked_is_told_without_making_or_keeping_it(tmp_path: Path) -> None:
+    name = tmp_path / "a.lock"
+    assert not is_locked(name)
+    assert not name.exists()
+    with name.open("wb") as file:
+        assert locked(file)
+        assert is_locked(name)
+    assert not is_locked(name)
+    lock = Lock(name)
     assert lock.take()
     lock.release()

@@ -9,6 +9,7 @@ import click
 import numpy as np
 
 from tactile_graph.cli.say import hand_over, say
+from tactile_graph.cli.targets import check_targets
 from tactile_graph.errors import UsageError
 from tactile_graph_classifiers.commands.shared import database_option, print_table, tell_apart
 
@@ -33,6 +34,7 @@ def objects(
 
     if (name is not None) + (exported is not None) + (imported is not None) > 1:
         raise UsageError("give one of NAME, --export and --import")
+    check_targets([("--export", exported)])
     store = ObjectDatabase(database, timeout_s)
     if imported is not None:
         from tactile_graph_classifiers.database.text import read_export

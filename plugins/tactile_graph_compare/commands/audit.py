@@ -26,6 +26,7 @@ from tactile_graph.cli.many.options import (
     workers_options,
 )
 from tactile_graph.cli.numbers import Finite
+from tactile_graph.cli.targets import check_targets
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
@@ -67,6 +68,7 @@ def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **optio
     opened = open_pipeline(
         pipeline, recordings, asked.source, asked.source_settings, asked.settings, span
     )
+    check_targets([("--json", asked.json_path)], [opened])
     auditor = Auditor(opened, tuple(asked.only), asked.sample, asked.seed)
     if not auditor.guards:
         raise UsageError(f"pipeline {opened.name!r} has no guard and no first_of to audit")

@@ -20,6 +20,7 @@ from tactile_graph.cli.many.options import (
     side_by_side,
     workers_options,
 )
+from tactile_graph.cli.targets import check_targets
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
@@ -92,6 +93,7 @@ def compare(variants: tuple[str, ...], span: Span, **options: Any) -> None:
     asked = _Options(**options)
     _check_files(asked)
     prepared, notes = _prepared(variants, span, asked)
+    check_targets(asked.targets, [variant.pipeline for variant in prepared])
     with Interrupts() as interrupts:
         code = _Run(prepared, notes, span, asked).go(interrupts.held)
     click.get_current_context().exit(code)
@@ -124,6 +126,15 @@ class _Options:
                  "--report": self.report}  # fmt: skip
         return {k: v for k, v in named.items() if v is not None}
 
+    @property
+    def targets(self) -> Iterator[tuple[str, str]]:
+        """Yield option and file, for every file that is written."""
+        from tactile_graph_compare.output.export import csv_files
+
+        for option, name in self.files.items():
+            names = csv_files(name) if option == "--csv" else [name]
+            yield from ((option, str(one)) for one in names)
+
 
 def _check_files(options: _Options) -> None:
     """Refuse what could not be written in the end, before the work."""
@@ -140,6 +151,8 @@ def _check_files(options: _Options) -> None:
         check_target(option, path / "errors.csv" if folder and path.is_dir() else path)
         if folder and path.exists() and not path.is_dir():
             raise UsageError(f"{option} {name}: is a file; its name must end in .csv")
+        if option == "--report" and path.suffix.lower() != ".html":
+            raise UsageError(f"{option} {name}: its name must end in .html")
 
 
 # -- what to compare -------------------------------------------------------------------------

@@ -31,6 +31,16 @@ AGREEMENTS = ("variant", "reference", "quantity", "unit", "mean", "median", "p95
 APART = ("frame", "time_s", "label", "variant", "reference", "quantity", "unit", "difference")
 
 
+IN_FOLDER = ("errors.csv", "times.csv", "scores.csv", "differences.csv", "agreement.csv",
+             "apart.csv")  # fmt: skip
+
+
+def csv_files(path: str | Path) -> list[Path]:
+    """Return the files that `write_csv` may write."""
+    path = Path(path)
+    return [path] if path.suffix.lower() == ".csv" else [path / name for name in IN_FOLDER]
+
+
 def write_csv(comparison: Comparison, path: str | Path) -> list[str]:
     """Write the errors to a ``.csv`` file, or all to a folder; return what was written.
 

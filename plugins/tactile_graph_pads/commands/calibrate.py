@@ -66,6 +66,7 @@ def calibrate(recordings: tuple[str, ...], **options: Any) -> None:
     is shared by them, and their readings are averaged (thesis section 2.4.2). A FILE alone holds
     many loads: its frames say their own.
     """
+    from tactile_graph.cli.targets import check_targets
     from tactile_graph.errors import UsageError
     from tactile_graph.files import check_target
     from tactile_graph_pads.calibration.calibration import write_calibration
@@ -82,6 +83,8 @@ def calibrate(recordings: tuple[str, ...], **options: Any) -> None:
     given = [*map(parse_loaded, recordings), *(read_loads(asked.loads) if asked.loads else ())]
     if not given:
         raise UsageError("nothing to calibrate from: give recordings as FILE=GRAMS, or --loads")
+    written = (("-o", asked.output), ("--plot", asked.plot))
+    check_targets(written, read=[one.path for one in given])
     observed = _observe(given, _reader(asked))
     points, fit, seen = points_of(observed.seen), asked.fit, observed.seen
     made = replace(

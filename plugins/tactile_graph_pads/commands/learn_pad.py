@@ -72,8 +72,10 @@ def _check(
     recordings: Sequence[str], empty: Sequence[Path], output: Path | None, plots: Path | None
 ) -> None:
     """Refuse before the work what cannot be done in the end."""
+    from tactile_graph.cli.targets import check_targets
     from tactile_graph.errors import UsageError
     from tactile_graph.files import check_target
+    from tactile_graph_pads.learning.pad_file import files_of
 
     if not recordings and not empty:
         raise UsageError(
@@ -89,6 +91,8 @@ def _check(
         if path.suffix.lower() not in endings:
             raise UsageError(f"{option} {path}: its name must end in {' or '.join(endings)}")
         check_target(option, path)
+    written = [("-o", path) for path in files_of(output)] if output is not None else []
+    check_targets([*written, ("--plots", plots)])
 
 
 def _read(

@@ -42,6 +42,12 @@ class Making:
     pad: str = ""
 
 
+def files_of(path: Path) -> tuple[Path, Path, Path]:
+    """Return the files of a learned pad: the YAML, and beside it its elements and its place."""
+    elements, place = (path.with_name(f"{path.stem}.{e}") for e in ("elements.csv", "place.npz"))
+    return path, elements, place
+
+
 def write_pad(path: Path, found: LearnedPad, base: Pad | None, making: Making) -> list[Path]:
     """Write a learned pad, and return all files it lies in.
 
@@ -54,12 +60,11 @@ def write_pad(path: Path, found: LearnedPad, base: Pad | None, making: Making) -
         The pad that was told.
     making : Making
     """
-    table = path.with_name(f"{path.stem}.elements.csv")
+    _, table, place = files_of(path)
     files = [table]
     write_elements(table, found.elements)
     learned = replace(found.learned, elements=table.name)
     if found.place is not None and found.place.helps:
-        place = path.with_name(f"{path.stem}.place.npz")
         write_place(place, found.place.correction)
         files.append(place)
         learned = replace(learned, place=place.name)

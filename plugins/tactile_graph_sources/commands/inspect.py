@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 
 from tactile_graph.cli.say import say
+from tactile_graph.cli.targets import check_targets
 from tactile_graph.pipeline.document import in_yaml
 
 if TYPE_CHECKING:
@@ -78,6 +79,7 @@ def inspect(
 
     if picture is not None and len(files) > 1:
         raise click.UsageError("--picture draws one recording; give one FILE")
+    check_targets([("--picture", picture)])
     told = reader_settings(settings)
     n_failed = 0
     for path in files:

@@ -13,6 +13,7 @@ import click
 
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
+from tactile_graph.cli.targets import check_targets
 
 if TYPE_CHECKING:
     from tactile_graph.errors import DataError
@@ -173,6 +174,7 @@ def _check_target(target: Path) -> None:
         )
     if not target.exists():
         check_target("TARGET", target)
+    check_targets([("TARGET", target)])
 
 
 def _until(frames: Iterator[Frame], seconds: float | None) -> Iterator[Frame]:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from tactile_graph_stress.study import Row
-    from tactile_graph_stress.subject import Subject
+    from tactile_graph_stress.subject import Left, Subject
 
 
 @click.command()
@@ -50,10 +50,13 @@ def stress(names: tuple[str, ...], quick: bool, seed: int, output: Path | None) 
         raise UsageError(f"--seed must be >= 0, got {seed}")
     if output is not None:
         check_ending(output)
-    found, left = subjects(installed())
-    wanted = chosen(found, names, left)
-    rows, n, ended = _rows(wanted, seed, quick, console(stderr=True))
+    found, apart = subjects(installed())
+    wanted, left = chosen(found, names, apart)
+    rows, n, ended = _rows(wanted, left, seed, quick, console(stderr=True))
+    if left and not rows and ended is None:
+        raise UsageError("\n".join(dict.fromkeys(map(str, left))))
     _show(rows)
+    _tell_left(left, names)
     if output is not None:
         options = "" if quick else " --full"
         options += f" --seed {seed}" if seed else ""
@@ -67,10 +70,14 @@ def stress(names: tuple[str, ...], quick: bool, seed: int, output: Path | None) 
 
 
 def _rows(
-    wanted: list[Subject], seed: int, quick: bool, say: Console
+    wanted: list[Subject], left: list[Left], seed: int, quick: bool, say: Console
 ) -> tuple[list[Row], int, KeyboardInterrupt | None]:
-    """Return the rows of the steps that were done, of how many, and what ended them early."""
-    from tactile_graph_stress.study import stressed
+    """Return the rows of the steps that were done, of how many, and what ended them early.
+
+    Those that turn out not to be stressed are added to ``left``.
+    """
+    from tactile_graph_stress.study import NotStressed, stressed
+    from tactile_graph_stress.subject import Left
 
     rows: list[Row] = []
     k = 0
@@ -78,7 +85,10 @@ def _rows(
         with _bar(say, len(wanted)) as at:
             for k, subject in enumerate(wanted):
                 at(k, subject.label)
-                rows += list(stressed(subject, seed, quick))
+                try:
+                    rows += list(stressed(subject, seed, quick))
+                except NotStressed as why:
+                    left.append(Left(subject.name, subject.plugin, str(why)))
     except KeyboardInterrupt as error:
         return rows, k, error
     return rows, len(wanted), None
@@ -109,3 +119,15 @@ def _show(rows: list[Row]) -> None:
     for line in troubles(rows):
         say.print(line, soft_wrap=True)
     say.print(LEGEND, style="dim")
+
+
+def _tell_left(left: list[Left], names: tuple[str, ...]) -> None:
+    """Say of named steps why they are not stressed, and of others how many are not."""
+    why = {one.name: str(one) for one in left}
+    for name in dict.fromkeys(names):
+        if name in why:
+            say(why.pop(name), err=True)
+    if why:
+        count = "1 step is" if len(why) == 1 else f"{len(why)} steps are"
+        by = f"tactile-graph stress {next(iter(why))}"
+        say(f"{count} not stressed; name one to read why: {by}", err=True)

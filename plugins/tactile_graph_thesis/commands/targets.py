@@ -46,6 +46,7 @@ class Targets:
         UsageError
             If a name, a folder or the number of items does not fit.
         """
+        from tactile_graph.cli.targets import check_targets
         from tactile_graph.errors import UsageError
         from tactile_graph_pads.calibration.plot import check_picture
 
@@ -58,6 +59,7 @@ class Targets:
             self._check_csv(str(self.csv))
         if self.plot is not None:
             check_picture(self.plot)
+        check_targets([("--csv", self.csv), ("--plot", self.plot)])
         if self.folder is not None:
             self._check_folder(self.folder)
 

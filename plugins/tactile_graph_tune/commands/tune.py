@@ -19,6 +19,7 @@ from tactile_graph.cli.arguments import (
 from tactile_graph.cli.many.options import place_asked, side_by_side, workers_options
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
+from tactile_graph.cli.targets import check_targets
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
@@ -126,6 +127,8 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
     opened = open_pipeline(
         pipeline, recordings, asked.source, asked.source_settings, asked.settings, span
     )
+    written = (("-o", asked.written), ("--plot", asked.plot), ("--json", asked.json_path))
+    check_targets(written, [opened])
     request = Request(
         opened, asked.answer, asked.quantity, asked.price, asked.most_error, asked.most_missed,
         asked.most_false, asked.most_us, asked.margin, asked.fields, asked.kept, free, asked.levels,

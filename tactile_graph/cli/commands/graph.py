@@ -10,6 +10,7 @@ import click
 
 from tactile_graph.cli.arguments import offered, pipeline_argument
 from tactile_graph.cli.say import hand_over, say
+from tactile_graph.cli.targets import check_targets
 from tactile_graph.errors import UsageError, did_you_mean
 from tactile_graph.files import check_target, write_whole
 from tactile_graph.plugins import registry
@@ -51,7 +52,9 @@ def graph(pipeline: str | None, form: str | None, output: str | None) -> None:
         check_target("-o", str(output))
     elif form in BINARY and on_screen():
         raise UsageError(f"--format {form}: is nothing to read on a screen; give -o FILE.{form}")
-    drawn = _drawn(load(pipeline, registry.installed()), form)
+    loaded = load(pipeline, registry.installed())
+    check_targets([("-o", output)], [loaded])
+    drawn = _drawn(loaded, form)
     if to_file:
         write_whole(str(output), drawn)
         say(f"wrote {output}", err=True)

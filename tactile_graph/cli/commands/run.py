@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
@@ -25,6 +25,7 @@ from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.cli.many.options import Workers
 from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.plot import IN_A_STRIP, Plot, check_plot, plot_of
+from tactile_graph.cli.targets import check_targets
 from tactile_graph.errors import UsageError
 from tactile_graph.files import is_plain
 
@@ -137,26 +138,24 @@ def run(
     stdout, with errors where the truth is known; programs ask for lines with -o.
     """
     lines = Output.of(output, form, full, long)
-    _check_files(recordings, lines, plot)
+    _check_files(lines, plot)
     divided = workers is not None or on is not None or resume
     if divided:
         _check_divided(lines, plot, decisions)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
+    check_targets((("-o", lines.name if lines else None), ("--plot", plot)), [opened])
     one = _Run(opened, tuple(only), span, seed, lines, plot, verify, decisions)
     if divided:
         one.divided(workers, on, resume)
     one.go()
 
 
-def _check_files(recordings: Sequence[str], output: Output | None, plot: str | None) -> None:
+def _check_files(output: Output | None, plot: str | None) -> None:
     """Refuse what could not be written in the end, before the work."""
     if output is not None:
         output.check()
     if plot is not None:
         check_plot(plot)
-    for option, name in (("-o", output.name if output else None), ("--plot", plot)):
-        if name is not None and any(Path(r).resolve() == Path(name).resolve() for r in recordings):
-            raise UsageError(f"{option} {name}: would overwrite the recording it is made from")
 
 
 def _check_divided(output: Output | None, plot: str | None, decisions: Path | None) -> None:

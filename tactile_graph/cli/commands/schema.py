@@ -13,6 +13,7 @@ import click
 from tactile_graph.cli.endings import NOT_DONE
 from tactile_graph.cli.file_kinds import PIPELINE, YAML, file_kind, kind_names, kind_of
 from tactile_graph.cli.say import hand_over, say
+from tactile_graph.cli.targets import check_targets
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, write_whole
 from tactile_graph.foreign_text import visible
@@ -56,6 +57,7 @@ def schema(names: tuple[str, ...], output: str | None, keys: bool, install: bool
     name = names[0] if names else PIPELINE
     if output not in (None, "-"):
         check_target("-o", str(output))
+        check_targets([("-o", output)])
     if keys:
         if output is not None:
             raise UsageError("--keys prints tables for people: it takes no -o")

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tactile_graph.api.pipeline import Pipeline
+from tactile_graph.cli.named_files import is_kept, is_there, named_by_settings, paths_in
 from tactile_graph.files import sha256_of
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.plugins.registry import installed
@@ -31,7 +32,8 @@ def made_of(pipeline: Pipeline, options: Mapping[str, Any]) -> dict[str, str]:
 
     Files are taken by their content: those that a setting of the source or of a node names.
     """
-    found = {f"file {path}": _content(path) for path in sorted(set(_files(pipeline)))}
+    named = {path for path, _ in named_by_settings(pipeline)}
+    found = {f"file {path}": _content(path) for path in sorted(named)}
     registry = pipeline.registry or installed()
     plugins = sorted({(p.name, p.version) for p in used_plugins(pipeline, registry)})
     return {
@@ -51,38 +53,9 @@ def changed(before: Mapping[str, str], now: Mapping[str, str]) -> str:
 
 def device(pipeline: Pipeline) -> str:
     """Return what the source reads that gives its frames only once; "" if nothing is."""
-    values = _values(pipeline.source.settings) if pipeline.source is not None else iter(())
-    once = (v for v in values if _there(v) and not (v.is_file() or v.is_dir()))
+    named = paths_in(pipeline.source.settings) if pipeline.source is not None else iter(())
+    once = (path for path in named if is_there(path) and not is_kept(path))
     return str(next(once, ""))
-
-
-def _files(graph: Graph) -> Iterator[Path]:
-    """Yield the files and folders that settings name."""
-    settings = [node.settings for node in graph.nodes.values()]
-    settings += [graph.source.settings] if graph.source is not None else []
-    for path in (p for s in settings for p in _values(s)):
-        if _there(path) and (path.is_file() or path.is_dir()):
-            yield path
-    for node in graph.nodes.values():
-        if node.inner is not None:
-            yield from _files(node.inner)
-
-
-def _values(settings: Any) -> Iterator[Path]:
-    if isinstance(settings, Mapping):
-        settings = list(settings.values())
-    if isinstance(settings, list | tuple):
-        for value in settings:
-            yield from _values(value)
-    elif isinstance(settings, str | Path) and str(settings).strip():
-        yield Path(settings)
-
-
-def _there(path: Path) -> bool:
-    try:
-        return path.exists()
-    except (OSError, ValueError):  # a text that no file can be called
-        return False
 
 
 def _code(graph: Graph) -> list[Path]:

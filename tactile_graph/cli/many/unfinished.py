@@ -15,6 +15,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
 
+from tactile_graph.cli.output.one_run import journal_of, refuse_if_written, refused
 from tactile_graph.errors import UsageError
 from tactile_graph.files import is_plain, said
 from tactile_graph.locks import Lock
@@ -40,7 +41,7 @@ class Unfinished:
         place = Path(output)
         self.output = output
         self._parts = place.with_name(f".{place.name}.parts")
-        self._journal = place.with_name(f".{place.name}.journal")
+        self._journal = journal_of(output)
         self._lock = Lock(self._journal)
         self._files: list[IO[bytes]] = []
         self._ends: list[int] = []
@@ -149,9 +150,17 @@ class Unfinished:
     # -- within --------------------------------------------------------------------------------
 
     def _take(self) -> None:
+        before = self._journal.exists()
         with said(self.output):
             if not self._lock.take():
-                raise UsageError(f"-o {self.output}: another run is writing it")
+                raise refused(self.output)
+        try:
+            refuse_if_written(self.output)
+        except UsageError:
+            if not before:
+                self._journal.unlink()
+            self._lock.release()
+            raise
 
     def _open(self, how: str) -> None:
         with said(self.output):

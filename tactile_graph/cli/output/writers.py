@@ -7,11 +7,11 @@ import math
 import os
 import sys
 from collections.abc import Iterable, Iterator
-from pathlib import Path
 from typing import Any, BinaryIO, NoReturn, Protocol
 
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.column_texts import csv_lines, number_texts
+from tactile_graph.cli.output.one_run import opened_alone
 from tactile_graph.engine.blocks.block import Block
 from tactile_graph.engine.outcomes.outcome import NO_VALUE
 from tactile_graph.engine.tables.block_columns import parts_of, plain_fields
@@ -196,6 +196,11 @@ class LineFile:
         self._n_lines = 0
         self._n_bytes = 0
 
+    @property
+    def keeps(self) -> bool:
+        """Whether what is written stays where a run ends early: there is a file by then."""
+        return self._file is not None
+
     def write(self, result: Result) -> None:
         """Write a frame's line through to the file.
 
@@ -213,14 +218,18 @@ class LineFile:
         self._n_lines += len(block)
 
     def open(self) -> BinaryIO:
-        """Open the file and write what stands before the first frame."""
+        """Open the file and write what stands before the first frame.
+
+        Raises
+        ------
+        UsageError
+            If another run is writing it, or it cannot be written.
+        """
         if self._file is None:
             if self.output == "-":
                 self._file = self._stdout.buffer
             else:
-                with said(self.output):
-                    # Unbuffered: a line goes out in one piece, a killed run leaves whole lines.
-                    self._file = Path(self.output).open("wb", buffering=0)  # noqa: SIM115
+                self._file = opened_alone(self.output)
             self._put(self._file, self.lines.head())
         return self._file
 

@@ -105,6 +105,42 @@ def test_wrong_usage_is_told(args, words):
         run(*args)
 
 
+NO_LEVEL = "step 'threshold' cannot be stressed: level_v or level must be given, got neither"
+
+
+@pytest.mark.parametrize(
+    ("names", "why"),
+    [
+        (["threshold"], [NO_LEVEL]),
+        (["simulate"], ["step 'simulate' cannot be stressed: a source"]),
+        (["simulate", "threshold"], ["step 'simulate' cannot be stressed: a source", NO_LEVEL]),
+    ],
+)
+def test_where_no_named_step_is_stressed_it_says_why_and_writes_nothing(tmp_path, names, why):
+    with pytest.raises(UsageError) as told:
+        run(*names, "-o", tmp_path / "out.csv")
+    assert str(told.value).splitlines() == why
+    assert [*tmp_path.iterdir()] == []
+
+
+@pytest.mark.slow
+def test_named_steps_that_are_not_stressed_say_why_beside_those_that_are():
+    result = run("threshold", "orientation", "simulate")
+    assert result.exit_code == 0
+    assert "  orientation " in result.stdout
+    assert set(result.stderr.splitlines()) >= {
+        NO_LEVEL, "step 'simulate' cannot be stressed: a source",
+    }  # fmt: skip
+
+
+@pytest.mark.slow
+def test_of_a_plugin_it_says_how_many_steps_are_not_stressed_and_how_to_read_why():
+    result = run("hull")
+    assert result.exit_code == 0
+    told = "1 step is not stressed; name one to read why: tactile-graph stress simplify_polygon"
+    assert told in result.stderr.splitlines()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)  # which every step is of one of
 def test_no_built_in_step_breaks(kind):

@@ -1,0 +1,57 @@
+"""The files and folders that settings name, of a pipeline and of those within it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from tactile_graph.pipeline.graph import Graph
+
+
+class Named(NamedTuple):
+    """A file or folder, and what names it."""
+
+    path: Path
+    by: str
+
+
+def named_by_settings(graph: Graph) -> Iterator[Named]:
+    """Yield the files and folders that settings of a graph's source and nodes name."""
+    if graph.source is not None:
+        yield from _named(graph.source.settings, "the source")
+    for node in graph.nodes.values():
+        yield from _named(node.settings, f"node {node.name!r}")
+        if node.inner is not None:
+            yield from named_by_settings(node.inner)
+
+
+def paths_in(value: Any) -> Iterator[Path]:
+    """Yield every text of a value, of lists and mappings in it too, as a path."""
+    if isinstance(value, Mapping):
+        value = list(value.values())
+    if isinstance(value, list | tuple):
+        for part in value:
+            yield from paths_in(part)
+    elif isinstance(value, str | Path) and str(value).strip():
+        yield Path(value)
+
+
+def is_there(path: Path) -> bool:
+    """Return whether there is such a file, folder or device."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):  # a text that no file can be called
+        return False
+
+
+def is_kept(path: Path) -> bool:
+    """Return whether there is such a file or folder: no device, no pipe."""
+    return is_there(path) and (path.is_file() or path.is_dir())
+
+
+def _named(settings: Mapping[str, Any], whose: str) -> Iterator[Named]:
+    for name, value in settings.items():
+        for path in filter(is_kept, paths_in(value)):
+            yield Named(path, f"setting {name!r} of {whose}")
