@@ -15,10 +15,10 @@ from tactile_graph import Frame, Image, loads
 from tactile_graph.compiled.preparing import preparing
 from tactile_graph_compare import Comparison, compare
 from tactile_graph_compare.output.export import time_rows
-from tactile_graph_compare.run.audit import audit
+from tactile_graph_compare.run.audit import Auditor
 from tactile_graph_compare.run.session import WARM_FRAMES, balanced_orders
 from tactile_graph_tune.rerun import rerun
-from tactile_graph_tune.table.record import Judged
+from tactile_graph_tune.table.record import Judged, Rounds, record
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 6, 7])
@@ -37,7 +37,7 @@ def test_of_many_variants_eight_different_ones_come_first() -> None:
     assert len({row[0] for row in balanced_orders(20, 8)}) == 8
 
 
-MADE_S = 0.02
+MADE_S = 0.1
 LATE = WARM_FRAMES + 2
 """The frame in which a branch runs for the first time, long after all is warm."""
 
@@ -103,7 +103,7 @@ def test_a_frame_with_which_machine_code_comes_is_run_again_and_its_own_time_cou
     assert branching.made
     assert branching.calls[WARM_FRAMES:].count(LATE) == 2
     assert np.isfinite(variant.times.per_frame_us).all()
-    assert variant.times.per_frame_us.max() < 1e6 * MADE_S
+    assert variant.times.per_frame_us[LATE] < 1e6 * MADE_S
     assert found.saving.merged_s < MADE_S
     assert [n.n_ran for n in found.graph.nodes] == [len(FRAMES)]
 
@@ -125,10 +125,14 @@ def test_where_steps_keep_state_it_is_run_once_and_has_no_time(branching: Branch
 def test_what_a_guard_saves_holds_no_compiling(branching: Branching, step: Any) -> None:
     text = "pipeline: p\nnodes: {n: {step: read, in: frame}, a: {step: branching, in: frame, "
     text += "when: n < 0}}\noutputs: [a, n]"
-    found = audit(loads(text, registry=registry({**STEPS, "branching": step})), FRAMES)
-    (guard,) = found.guards
+    auditor = Auditor(loads(text, registry=registry({**STEPS, "branching": step})))
+    for frame in FRAMES:
+        auditor.add(frame)
+    auditor.summarise()
+    (guard,) = auditor.guards
     assert branching.made
-    assert guard.saved_us < 1e6 * MADE_S / len(FRAMES)
+    assert len(guard.saved_us) == len(FRAMES)
+    assert guard.saved_us[LATE] < 1e6 * MADE_S
 
 
 def test_last_runs_of_tuning_hold_no_compiling(
@@ -138,4 +142,15 @@ def test_last_runs_of_tuning_hold_no_compiling(
     monkeypatch.setattr(time, "process_time", time.perf_counter)  # who sleeps takes none
     times_us, _ = rerun({"p": pipeline(branch)}, FRAMES, Judged("a", "q", "", 1.0), 1, 0)["p"]
     assert branching.made
-    assert times_us.max() < 1e6 * MADE_S
+    assert times_us[LATE] < 1e6 * MADE_S
+
+
+def test_tables_of_tuning_hold_no_compiling(
+    branching: Branching, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tactile_graph_tune.table.record.LossOf", lambda *a: lambda frame, at: 0.0)
+    monkeypatch.setattr("tactile_graph_tune.table.record.warm_up", lambda: None)
+    judged, rounds = Judged("a", "q", "", 1.0), Rounds(1, 0, lambda n, of: None)
+    (table,) = record([pipeline(branch)], (), FRAMES, judged, rounds)
+    assert branching.made
+    assert table.nodes["a"].time_us[LATE] < 1e6 * MADE_S
