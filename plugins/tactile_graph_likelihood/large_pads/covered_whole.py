@@ -37,7 +37,7 @@ nothing to do with the object."""
 FAR, NARROWER, LARGER = 2.0, 0.65, 1.5
 """By how many deviations the load may move, and how the deviation may change, before readings are
 sorted anew."""
-LARGE = 800.0  # elements around an outline from which on it is looked at by its rim
+LARGE = 3000.0  # elements around an outline from which on it is looked at by its rim
 MARGIN, KEPT = 2.0, 0.8
 """Pitches by which an outline may move so that it still covers all, and those at which that is
 looked for anew."""

@@ -191,8 +191,13 @@ def ellipse_areas(  # noqa: D103 - the pair's docstring is the reference's
         inner = max(math.ceil((x_cm + max(low[2], high[2])) / pitch_cm), first)
         outer = math.floor((x_cm + min(low[3], high[3]) - element_cm) / pitch_cm) + 1
         outer = min(outer, last) if low[1] > 0.0 and high[1] > 0.0 else inner
-        c = first
-        while c < last:
+        # no farther than the row's arcs reach, or the ellipse's own ends where the row has them
+        left = -A if top < -m * A < top + element_cm else min(low[2], high[2])
+        right = max(low[3] if low[1] > 0.0 else -A, high[3] if high[1] > 0.0 else -A)
+        right = A if top < m * A < top + element_cm else right
+        c = max(math.floor((x_cm + left - element_cm) / pitch_cm) + 1, first)
+        end = min(math.ceil((x_cm + right) / pitch_cm), last)
+        while c < end:
             if inner <= c < outer:
                 areas[r, c:outer] = full
                 c = outer
