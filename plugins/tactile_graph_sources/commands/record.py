@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -99,11 +99,12 @@ def record(
     gone: list[DataError] = []
     ended: KeyboardInterrupt | None = None
     store: StoreWriter | None = None
-    with Interrupts():
+    with Interrupts() as interrupts:
         try:
             about = {"preset": preset or "", "pad": pad, "port": port or f"source {source}"}
             with StoreWriter(target, chunk, append, about) as store:
-                _keep(frames if give_up is None else _until_gone(frames, gone), store)
+                kept = frames if give_up is None else _until_gone(frames, gone)
+                _keep(kept, store, interrupts.again)
         except KeyboardInterrupt as error:
             ended = error  # the usual way to end a recording; what was held is written by now
         except TactileGraphError as error:
@@ -183,12 +184,16 @@ def _until(frames: Iterator[Frame], seconds: float | None) -> Iterator[Frame]:
             return
 
 
-def _keep(frames: Iterator[Frame], store: StoreWriter) -> None:
-    """Write the frames; on a terminal, say how many and how fast."""
+def _keep(frames: Iterator[Frame], store: StoreWriter, again: Callable[[], None]) -> None:
+    """Write the frames; on a terminal, say how many and how fast.
+
+    ``again`` is called after each and raises a signal that was swallowed on its way here.
+    """
     shown = sys.stderr.isatty()
     since, n = time.monotonic(), 0
     for frame in frames:
         store.write(frame)
+        again()
         n += 1
         now = time.monotonic()
         if shown and now - since > SHOW_EVERY_S:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import threading
@@ -228,6 +229,49 @@ def test_frames_of_any_source_are_recorded_with_their_truth(tmp_path: Path) -> N
     frames = list(read_store(tmp_path / "a.zarr"))
     assert len(frames) == 3
     assert all(f.truth for f in frames)
+
+
+SIMULATED = ("--source", "simulate", "--with", "scene=discs")
+
+
+def recorded(target: Path, *args: object):
+    return CliRunner().invoke(cli, ["record", str(target), *map(str, args)])
+
+
+@pytest.mark.parametrize(
+    ("method", "n_kept"), [("_make", 1), ("_put", 3)], ids=["as it is made", "as it is closed"]
+)
+def test_ctrl_c_as_a_store_is_made_or_closed_loses_no_frame(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, method: str, n_kept: int
+) -> None:
+    real = getattr(StoreWriter, method)
+
+    def interrupted(self: StoreWriter, *args: object) -> object:
+        os.kill(os.getpid(), signal.SIGINT)
+        return real(self, *args)
+
+    monkeypatch.setattr(StoreWriter, method, interrupted)
+    target = tmp_path / "a.zarr"
+    result = recorded(target, *SIMULATED, "--frames", 3)
+    assert result.exit_code == 0, result.output
+    assert f"a.zarr: {n_kept} frame" in result.output
+    assert len(list(read_store(target))) == n_kept
+
+
+def test_a_signal_that_is_swallowed_on_its_way_ends_the_recording_at_the_next_frame(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = StoreWriter.write
+
+    def write(self: StoreWriter, frame: Frame) -> None:
+        real(self, frame)
+        with contextlib.suppress(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    monkeypatch.setattr(StoreWriter, "write", write)
+    result = recorded(tmp_path / "a.zarr", *SIMULATED, "--frames", 3)
+    assert result.exit_code == 128 + signal.SIGTERM
+    assert "a.zarr: 1 frame\n" in result.output
 
 
 @pytest.mark.parametrize(
