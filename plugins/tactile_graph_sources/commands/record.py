@@ -112,9 +112,8 @@ def record(
         finally:
             if isinstance(frames, Generator):
                 frames.close()
-    n_came = report.counts["good frames"] + report.counts["frames"]
-    if store is not None and (failure is None or n_came):
-        _tell(store, report)
+    if store is not None and (failure is None or store.n_written > store.n_before):
+        _tell(store, report, by_port=source is None)
     if failure is not None:
         raise failure
     if ended is not None and (store is None or isinstance(ended, Ended)):
@@ -204,13 +203,16 @@ def _keep(frames: Iterator[Frame], store: StoreWriter, again: Callable[[], None]
         say("", err=True)
 
 
-def _tell(store: StoreWriter, report: Report) -> None:
+def _tell(store: StoreWriter, report: Report, by_port: bool) -> None:
     """Say what is written, and what the link was like, leaving out what is as it should be."""
     n = store.n_written
     if n == store.n_before:
-        say(f"{store.path}: no frame came, and nothing was written", err=True)
+        came = report.counts["good frames"] + report.counts["frames"]
+        what = "ended before the first frame was kept" if came else "no frame came"
+        say(f"{store.path}: {what}, and nothing was written", err=True)
         n_bytes = report.counts["bytes"]
-        say(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
+        if by_port:
+            say(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
         return
     say(f"{store.path}: {n} frame{'s' if n != 1 else ''}")
     names = [n for n in sorted(report.counts) if n not in UNTOLD]

@@ -274,6 +274,27 @@ def test_a_signal_that_is_swallowed_on_its_way_ends_the_recording_at_the_next_fr
     assert "a.zarr: 1 frame\n" in result.output
 
 
+def test_what_does_not_fit_is_told_alone_and_of_no_port(tmp_path: Path) -> None:
+    with StoreWriter(tmp_path / "a.zarr") as store:
+        store.write(Frame.of(np.zeros((3, 2)), (1.3, 1.0), quantity="volt"))
+    result = recorded(tmp_path / "a.zarr", *SIMULATED, "--frames", 3, "--append")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("error: ")
+    assert "a.zarr: holds 3 x 2 cells" in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+
+
+def test_only_a_pad_is_said_to_have_sent_bytes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tactile_graph_sources.commands.record._keep", interrupted)
+    result = recorded(tmp_path / "a.zarr", *SIMULATED)
+    assert result.stderr.endswith("a.zarr: no frame came, and nothing was written\n")
+
+
 @pytest.mark.parametrize(
     ("args", "message"),
     [
