@@ -197,8 +197,9 @@ def _part(path: Path) -> Iterator[Path]:
     with said(path):
         try:
             yield part
-            if part.exists():
-                part.replace(target)
+            with part.open("rb+") as file:
+                os.fsync(file.fileno())  # some discs tell only now that they are full
+            part.replace(target)
         finally:
             part.unlink(missing_ok=True)
 
