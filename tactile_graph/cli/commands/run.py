@@ -377,7 +377,10 @@ class _Run:
             self._finish_lines()
             came = self.interrupted
             self.tally.close(self.people, self.report, words_of(came) if came else "")
-            self._hints(self.drawing is not None and self.drawing.save(self.stderr))
+            drawn = self.drawing is not None and self.drawing.save(self.stderr)
+            if self.drawing is not None:
+                self.interrupted = came or self.drawing.interrupted
+            self._hints(drawn)
         if self.error is not None:
             raise self.error  # the command line shows it; what was done stands above
         if self.interrupted is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import resource
+import signal
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -200,3 +201,46 @@ def test_what_ffmpeg_fails_with_is_told(
     with pytest.raises(OSError) as got:
         film()
     assert got.value.strerror == told
+
+
+def stopped(path: Path, times: int) -> Film:
+    """Return a film in whose second picture signals come, one after the other."""
+    film = Film("discs", ())
+    for result in circle_demo().stream(timed([0.0, 0.1, 0.2, 0.3])):
+        film.add(result)
+
+    def interrupt(done: int, n: int) -> None:
+        assert n == 4
+        for _ in range(times if done == 2 else 0):
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        film.write(path, interrupt)
+    return film
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("suffix", [".gif", ".mp4"])
+def test_ctrl_c_ends_a_film_with_the_picture_in_hand(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"a{suffix}"
+    if suffix == ".mp4":
+        library = pytest.importorskip("imageio_ffmpeg", reason="the 'film' extra is missing")
+    film = stopped(path, 1)
+    assert (film.n_painted, film.written) == (2, True)
+    if suffix == ".gif":
+        assert len(pictures(path)[0]) == 2
+    else:
+        assert library.count_frames_and_secs(str(path))[0] == 5
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("suffix", [".gif", ".mp4"])
+def test_ctrl_c_once_more_leaves_the_old_film_and_nothing_else(tmp_path: Path, suffix: str) -> None:
+    if suffix == ".mp4":
+        pytest.importorskip("imageio_ffmpeg", reason="the 'film' extra is missing")
+    path = tmp_path / f"a{suffix}"
+    path.write_bytes(b"old")
+    assert not stopped(path, 2).written
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+    assert path.read_bytes() == b"old"
