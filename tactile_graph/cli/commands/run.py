@@ -21,7 +21,7 @@ from tactile_graph.cli.arguments import (
     source_options,
 )
 from tactile_graph.cli.endings import SOME_FAILED, exited
-from tactile_graph.cli.interrupt import code_of, words_of
+from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
 from tactile_graph.cli.many.options import Workers
 from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.plot import IN_A_STRIP, Plot, check_plot, plot_of
@@ -219,7 +219,6 @@ class _Run:
         click.get_current_context().exit(code)
 
     def go(self) -> None:
-        from tactile_graph.cli.interrupt import Interrupts
         from tactile_graph.cli.output.progress import Bar
         from tactile_graph.cli.output.tally import Tally
         from tactile_graph.cli.terminal import console, stdout_for_programs
@@ -247,7 +246,7 @@ class _Run:
         self.bar = Bar(self.stderr, self.pipeline.name, shown=not on_screen)
         with Interrupts() as interrupts:
             with stdout_for_programs(self.output is not None and self.output.name == "-"):
-                self._frames(interrupts.held)
+                self._frames(interrupts)
             code = self._close()
         click.get_current_context().exit(code)
 
@@ -288,13 +287,14 @@ class _Run:
         warm_up()
         self.bar.now(expected)
 
-    def _frames(self, held: Any) -> None:
+    def _frames(self, interrupts: Interrupts) -> None:
         from tactile_graph.compiled import answered_meanwhile
 
         try:
             with answered_meanwhile(self._still_compiling):
                 for results in self._results():
-                    with held:
+                    interrupts.again()
+                    with interrupts.held:
                         self._take(results)
         except KeyboardInterrupt as error:
             self.interrupted = error
