@@ -79,6 +79,27 @@ def test_every_frame_is_recorded_and_gone_on_with(tmp_path: Path, pad: FakePad, 
     assert [f.index for f in read if f.gap] == [30]
 
 
+PRINTED = """preset: printed
+transport: {baud: 115200}
+framer: {kind: text}
+geometry: {rows: 2, columns: 3, quantity: gram}
+"""
+
+
+def test_what_a_board_prints_is_recorded_as_it_is(tmp_path: Path, pad: FakePad, sends) -> None:
+    preset, target = tmp_path / "printed.yaml", tmp_path / "a.zarr"
+    preset.write_text(PRINTED)
+    sends(b"0\n2.00,2.01,-2.02,nan,1e-3,5\r\n-1,-2,-3,-4,-5,-6\r\n1,2,3,4,5,6\r\n")
+    words = ["--port", str(pad.link), "--preset", str(preset), "--give-up", "20"]
+    result = recorded(target, *words, "--frames", 3)
+    assert result.exit_code == 0, result.output
+    first, second, third = (f.image for f in read_store(target))
+    assert first.filled(-9.0).tolist() == [[2.0, 2.01, -2.02], [-9.0, 0.001, 5.0]]
+    assert second.values.tolist() == [[-1.0, -2.0, -3.0], [-4.0, -5.0, -6.0]]
+    assert third.valid is None or third.valid.all()
+    assert first.quantity == "gram"
+
+
 def test_ctrl_c_keeps_what_was_recorded(
     tmp_path: Path, pad: FakePad, sends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
