@@ -79,19 +79,29 @@ def write_whole(name: Name, content: str | bytes) -> None:
 
 
 @contextmanager
-def uninterrupted() -> Iterator[None]:
+def uninterrupted(once: bool = False) -> Iterator[list[int]]:
     """Let Ctrl-C, and the signals that end programs, wait for the end of the block.
 
     For what several steps make and only all of them undo, and for libraries that go on writing in
     threads of their own after the call that began it was interrupted. Other threads than the main
     one get no signals; there the block runs as it is.
+
+    Parameters
+    ----------
+    once : bool
+        Only the first one waits; the next one acts at once.
+
+    Yields
+    ------
+    list of int
+        The signals that wait so far.
     """
     waiting: list[int] = []
     before: dict[int, Any] = {}
     over = False
 
     def wait(number: int, frame: FrameType | None) -> None:
-        if over:  # what came first is being raised, and this one is not restored yet
+        if over or (once and waiting):  # over: it is being raised, and this one not restored yet
             before[number](number, frame)
         waiting.append(number)
 
@@ -102,7 +112,7 @@ def uninterrupted() -> Iterator[None]:
                 if number is not None and callable(handler := signal.getsignal(number)):
                     before[number] = handler
                     signal.signal(number, wait)
-        yield
+        yield waiting
     finally:
         over = True
         for number, handler in before.items():

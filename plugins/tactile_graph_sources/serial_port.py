@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
+import numpy as np
 from annotated_types import Ge, Gt
 
 from tactile_graph.errors import DataError, UsageError
@@ -155,8 +156,11 @@ def _frame(arrived: Arrived, index: int, kit: Preset, port: str) -> Frame:
     decoded = arrived.frame
     g = kit.geometry
     pitch = (g.pitch_cm, g.pitch_cm) if isinstance(g.pitch_cm, float | int) else g.pitch_cm
+    values, valid = decoded.values, ~np.isnan(decoded.values)
+    if not valid.all():
+        values = np.where(valid, values, 0.0)
     return Frame(
-        Image(decoded.values, pitch, (0.0, 0.0), g.quantity),
+        Image(values, pitch, (0.0, 0.0), g.quantity, None if valid.all() else valid),
         index,
         arrived.time_s,
         device_time_s=decoded.device_time_s,

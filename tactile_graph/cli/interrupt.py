@@ -76,6 +76,14 @@ class Interrupts:
         if self._told_before is not None:
             sys.unraisablehook, self._told_before = self._told_before, None
 
+    def again(self) -> None:
+        """Raise what was raised already and swallowed by code that it came through, as an import.
+
+        For a loop without an end of its own, which would go on as if no signal had come.
+        """
+        if Interrupts.latest is not None and not self.held.depth:
+            raise Interrupts.latest
+
     def _swallowed(self, what: Any) -> None:
         """Have a signal come again that was raised in vain; other errors are told as before."""
         error = Interrupts.latest

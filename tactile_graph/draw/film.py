@@ -11,7 +11,7 @@ import pickle
 import tempfile
 import weakref
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -28,13 +28,13 @@ from tactile_graph.draw.display import (
     printed,
     truth_list,
 )
-from tactile_graph.draw.film_files import RATE_HZ, Gif, Mp4, Picture
+from tactile_graph.draw.film_files import RATE_HZ, FilmFile, Gif, Mp4, Picture
 from tactile_graph.draw.paint_strip import DASHES, Pen
 from tactile_graph.draw.strip import make_visible
 from tactile_graph.draw.strip_columns import Column
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, outcome_word
 from tactile_graph.engine.outcomes.outcomes import Outcomes
-from tactile_graph.files import said
+from tactile_graph.files import said, uninterrupted
 from tactile_graph.part_files import part_of
 from tactile_graph.wires import Frame
 
@@ -78,11 +78,16 @@ class Film:
         Whether frames were left out for want of room: a film has `MOST_PICTURES` at most.
     shortened : bool
         Whether a pause was longer than `LONGEST_S`, and is shown as that.
+    n_painted : int
+        Pictures that are painted.
+    written : bool
+        Whether there is a film of these.
     """
 
     def __init__(self, name: str, asked: Sequence[str]) -> None:
         self.n = 0
-        self.full = self.shortened = False
+        self.n_painted = 0
+        self.full = self.shortened = self.written = False
         self._name = name
         self._asked = tuple(asked)
         self._spool: BinaryIO = tempfile.TemporaryFile()  # noqa: SIM115 -- lives as long as this
@@ -136,6 +141,9 @@ class Film:
     ) -> None:
         """Paint the pictures, one at least, and write them as ``.gif`` or ``.mp4``, whole or not.
 
+        A first Ctrl-C, or a signal that ends programs, ends the film with the picture in hand, and
+        is raised when the film is there; a second one leaves nothing.
+
         Parameters
         ----------
         path : path
@@ -148,17 +156,23 @@ class Film:
             If it cannot be written.
         """
         painter = _Painter(self._name, self._column(), self._true)
-        seconds = self._seconds()
         made = Mp4 if Path(path).suffix.lower() == ".mp4" else Gif
         self._spool.seek(0)
-        picture = painter.picture(pickle.load(self._spool))
-        with _part(Path(path)) as part, made(part, picture.shape[:2]) as film:
-            for i, shown_s in enumerate(seconds, 1):
-                film.add(picture, shown_s)
-                if i < self.n:
+        with uninterrupted(once=True) as waiting:
+            with _part(Path(path)) as part, ExitStack() as end:
+                film: FilmFile | None = None
+                for i, shown_s in enumerate(self._seconds(), 1):
                     picture = painter.picture(pickle.load(self._spool))
-                if progress is not None:
-                    progress(i, self.n)
+                    if film is None:
+                        film = end.enter_context(made(part, picture.shape[:2]))
+                    film.add(picture, shown_s)
+                    self.n_painted = i
+                    if progress is not None:
+                        progress(i, self.n)
+                    if waiting:
+                        break
+                end.close()  # before it gets its name
+            self.written = True
 
     def _column(self) -> Column:
         high = self._high if self._high > self._low else self._low + 1.0
@@ -197,8 +211,9 @@ def _part(path: Path) -> Iterator[Path]:
     with said(path):
         try:
             yield part
-            if part.exists():
-                part.replace(target)
+            with part.open("rb+") as file:
+                os.fsync(file.fileno())  # some discs tell only now that they are full
+            part.replace(target)
         finally:
             part.unlink(missing_ok=True)
 

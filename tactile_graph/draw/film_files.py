@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
+import os
 import struct
+import subprocess
+import threading
 from abc import ABC, abstractmethod
+from collections import deque
 from pathlib import Path
 from typing import Any, Self
 
@@ -17,6 +23,14 @@ from tactile_graph.errors import UsageError
 Picture = NDArray[np.uint8]
 RATE_HZ = 25.0
 """Pictures a second, at most."""
+CRF = 25
+"""Quality of MP4, by the scale of x264: 0 loses nothing, 51 is worst."""
+MOST_LINES = 20
+"""Lines of what ffmpeg tells that are kept."""
+REASONS = (
+    errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, errno.ENOENT, errno.EIO,
+)  # fmt: skip
+"""Why the system lets no file be written, the likeliest first; ffmpeg tells them in a line."""
 MISSING = (
     "films in MP4 need imageio-ffmpeg: pip install 'tactile-graph[film]'; a .gif needs nothing more"
 )
@@ -109,28 +123,79 @@ class Mp4(FilmFile):
     ------
     UsageError
         If imageio-ffmpeg is not installed.
+    OSError
+        If ffmpeg cannot write the film, with the reason that it tells.
     """
 
     def __init__(self, path: Path, size: tuple[int, int]) -> None:
-        self._writer: Any = ffmpeg().write_frames(
-            str(path), size[::-1], fps=RATE_HZ, codec="libx264", macro_block_size=2,
-            output_params=["-f", "mp4", "-movflags", "+faststart"], ffmpeg_log_level="error",
+        rows, columns = size
+        # Ctrl-C is not for it, and a file that may grow no more is told, not its end by SIGXFSZ.
+        alone: dict[str, Any] = (
+            {"creationflags": getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)}
+            if os.name == "nt"
+            else {"process_group": 0, "restore_signals": False}
+        )
+        self._process = subprocess.Popen(
+            [
+                ffmpeg().get_ffmpeg_exe(), "-y", "-v", "error",
+                "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{columns}x{rows}",
+                "-r", f"{RATE_HZ:g}", "-i", "-",
+                "-an", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", str(CRF),
+                "-f", "mp4", "-movflags", "+faststart", str(path),
+            ],
+            stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, **alone,
         )  # fmt: skip
-        self._writer.send(None)
+        self._told: deque[bytes] = deque(maxlen=MOST_LINES)
+        # While it is told to, as ffmpeg would wait where nobody reads.
+        self._listener = threading.Thread(
+            target=self._told.extend, args=(self._process.stderr,), daemon=True
+        )
+        self._listener.start()
         self._due_s = 0.0
         self._n = 0
 
     def add(self, picture: Picture, seconds: float) -> None:
         """Show a picture for so long."""
+        assert self._process.stdin is not None
         self._due_s += seconds
-        data = np.ascontiguousarray(picture)
-        for _ in range(max(round(self._due_s * RATE_HZ) - self._n, 1)):
-            self._writer.send(data)
-            self._n += 1
+        data = np.ascontiguousarray(picture).data
+        try:
+            for _ in range(max(round(self._due_s * RATE_HZ) - self._n, 1)):
+                self._process.stdin.write(data)
+                self._n += 1
+        except OSError:  # it has ended, and says why
+            self._end()
+            raise self._why() from None
 
     def close(self, whole: bool) -> None:
         """End the film."""
-        self._writer.close()
+        try:
+            if whole and self._end():
+                raise self._why()
+        finally:
+            self._process.kill()  # nothing where it has ended
+            self._end()
+
+    def _end(self) -> int:
+        """Return the exit code of ffmpeg, to which nothing more comes."""
+        assert self._process.stdin is not None
+        assert self._process.stderr is not None
+        with contextlib.suppress(OSError):  # it has ended already
+            self._process.stdin.close()
+        code = self._process.wait()
+        self._listener.join()
+        self._process.stderr.close()
+        return code
+
+    def _why(self) -> OSError:
+        """Return the error that ffmpeg told: the system's own word for it, or its last line."""
+        lines = [line.decode(errors="replace").strip() for line in self._told]
+        for number in REASONS:
+            if any(os.strerror(number) in line for line in lines):
+                return OSError(number, os.strerror(number))
+        code = self._process.returncode
+        last = next(filter(None, reversed(lines)), f"it ended with code {code}")
+        return OSError(errno.EIO, f"ffmpeg: {last}")
 
 
 def ffmpeg() -> Any:

@@ -51,6 +51,8 @@ def foreign_code(name: str, label: str) -> Iterator[None]:
             raise signals.came from None  # what was imported may have made another error of it
         finally:
             told.cancel()
+        if signals.came is not None:  # or it may have gone on, as if none had come
+            raise signals.came
 
 
 def _tell(name: str, label: str) -> None:

@@ -156,10 +156,12 @@ def test_the_restorers_shown_are_allowed_and_a_wrong_setting_is_told_as_shown() 
     assert told in str(caught.value)
 
 
-def test_the_preset_shown_is_a_preset(tmp_path: Path) -> None:
-    (preset,) = fenced("devices", "yaml")
-    (tmp_path / "my-mat.yaml").write_text(preset, "utf-8")
-    assert load_preset(str(tmp_path / "my-mat.yaml")).geometry.n_cells == 64
+def test_the_presets_shown_are_presets(tmp_path: Path) -> None:
+    n_cells = []
+    for preset in fenced("devices", "yaml"):
+        (tmp_path / "mine.yaml").write_text(preset, "utf-8")
+        n_cells.append(load_preset(str(tmp_path / "mine.yaml")).geometry.n_cells)
+    assert n_cells == [64, 256]
 
 
 # -- code ------------------------------------------------------------------------------------

@@ -152,6 +152,21 @@ def test_a_signal_waits_for_the_end_of_what_only_all_of_it_undoes() -> None:
         signal.raise_signal(signal.SIGINT)
 
 
+def test_where_only_the_first_signal_waits_the_next_one_acts_at_once() -> None:
+    done = []
+
+    def work() -> None:
+        with uninterrupted(once=True) as waiting:
+            signal.raise_signal(signal.SIGINT)
+            done.extend(waiting)
+            signal.raise_signal(signal.SIGINT)
+            done.append(0)
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    assert done == [signal.SIGINT]
+
+
 def test_in_another_thread_nothing_waits() -> None:
     done = []
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -100,11 +100,12 @@ def record(
     gone: list[DataError] = []
     ended: KeyboardInterrupt | None = None
     store: StoreWriter | None = None
-    with Interrupts():
+    with Interrupts() as interrupts:
         try:
             about = {"preset": preset or "", "pad": pad, "port": port or f"source {source}"}
             with StoreWriter(target, chunk, append, about) as store:
-                _keep(frames if give_up is None else _until_gone(frames, gone), store)
+                kept = frames if give_up is None else _until_gone(frames, gone)
+                _keep(kept, store, interrupts.again)
         except KeyboardInterrupt as error:
             ended = error  # the usual way to end a recording; what was held is written by now
         except TactileGraphError as error:
@@ -112,9 +113,8 @@ def record(
         finally:
             if isinstance(frames, Generator):
                 frames.close()
-    n_came = report.counts["good frames"] + report.counts["frames"]
-    if store is not None and (failure is None or n_came):
-        _tell(store, report)
+    if store is not None and (failure is None or store.n_written > store.n_before):
+        _tell(store, report, by_port=source is None)
     if failure is not None:
         raise failure
     if ended is not None and (store is None or isinstance(ended, Ended)):
@@ -185,12 +185,16 @@ def _until(frames: Iterator[Frame], seconds: float | None) -> Iterator[Frame]:
             return
 
 
-def _keep(frames: Iterator[Frame], store: StoreWriter) -> None:
-    """Write the frames; on a terminal, say how many and how fast."""
+def _keep(frames: Iterator[Frame], store: StoreWriter, again: Callable[[], None]) -> None:
+    """Write the frames; on a terminal, say how many and how fast.
+
+    ``again`` is called after each and raises a signal that was swallowed on its way here.
+    """
     shown = sys.stderr.isatty()
     since, n = time.monotonic(), 0
     for frame in frames:
         store.write(frame)
+        again()
         n += 1
         now = time.monotonic()
         if shown and now - since > SHOW_EVERY_S:
@@ -201,13 +205,16 @@ def _keep(frames: Iterator[Frame], store: StoreWriter) -> None:
         say("", err=True)
 
 
-def _tell(store: StoreWriter, report: Report) -> None:
+def _tell(store: StoreWriter, report: Report, by_port: bool) -> None:
     """Say what is written, and what the link was like, leaving out what is as it should be."""
     n = store.n_written
     if n == store.n_before:
-        say(f"{store.path}: no frame came, and nothing was written", err=True)
+        came = report.counts["good frames"] + report.counts["frames"]
+        what = "ended before the first frame was kept" if came else "no frame came"
+        say(f"{store.path}: {what}, and nothing was written", err=True)
         n_bytes = report.counts["bytes"]
-        say(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
+        if by_port:
+            say(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
         return
     say(f"{store.path}: {n} frame{'s' if n != 1 else ''}")
     names = [n for n in sorted(report.counts) if n not in UNTOLD]

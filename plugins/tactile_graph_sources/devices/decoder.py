@@ -23,6 +23,8 @@ from tactile_graph_sources.devices.units import Assembled, Units
 class Decoded(NamedTuple):
     """One frame: values (rows, columns), device clock, loss just before it, place of its end.
 
+    Values are NaN where the pad sent none.
+
     ``doubtful`` is true where the protocol cannot tell whether a frame starts there.
     """
 
@@ -44,7 +46,7 @@ class Decoder:
     def __init__(self, preset: Preset) -> None:
         self.preset = preset
         self.counts = LinkCounts()
-        self.placement = Placement(preset.geometry)
+        self.placement = Placement(preset.geometry, missing=isinstance(preset.framer, Text))
         self.framer = _framer(preset, self.counts)
         self.assembler = _assembler(preset, self.framer, self.counts)
         self._clock = _clock(preset)
@@ -120,8 +122,9 @@ class Decoder:
 
     def _refuse(self, cells: NDArray[Any]) -> None:
         self.counts.bad["out of range"] += len(cells)
+        known = cells[~np.isnan(cells)] if self.placement.missing else cells
         self._out_of_range = (
-            f"values of {cells.min():g} to {cells.max():g} came, "
+            f"values of {known.min():g} to {known.max():g} came, "
             f"the preset allows {self.placement.range or 'finite ones'}"
         )
 

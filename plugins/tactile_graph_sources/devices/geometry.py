@@ -11,10 +11,18 @@ from tactile_graph_sources.devices.preset import Geometry
 
 
 class Placement:
-    """The geometry as one table: which wire cell each image cell takes its value from."""
+    """The geometry as one table: which wire cell each image cell takes its value from.
 
-    def __init__(self, geometry: Geometry) -> None:
+    Parameters
+    ----------
+    geometry : Geometry
+    missing : bool
+        Whether NaN stands for a cell without a value; otherwise a frame with it is refused.
+    """
+
+    def __init__(self, geometry: Geometry, missing: bool = False) -> None:
         self.geometry = geometry
+        self.missing = missing
         self.table = _table(geometry)
         self.shape = self.table.shape
         flat = self.table.reshape(-1)
@@ -24,11 +32,14 @@ class Placement:
     def in_range(self, cells: NDArray[Any]) -> NDArray[np.bool_]:
         """Return which frames, shape (k, n), hold nothing but allowed values."""
         good = np.ones(len(cells), dtype=np.bool_)
-        if cells.dtype.kind == "f":
+        if cells.dtype.kind == "f" and not self.missing:
             good &= np.isfinite(cells).all(axis=1)
         if self.range is not None:
             low, high = self.range
-            good &= (cells.min(axis=1) >= low) & (cells.max(axis=1) <= high)
+            if self.missing:  # of NaN neither is true
+                good &= ~((cells < low) | (cells > high)).any(axis=1)
+            else:
+                good &= (cells.min(axis=1) >= low) & (cells.max(axis=1) <= high)
         return good
 
     def images(self, cells: NDArray[Any]) -> NDArray[np.float64]:

@@ -197,11 +197,14 @@ class Packet(Record):
 
 
 class Text(Record):
-    """Choice 3b: lines of numbers.
+    """Choice 3b: lines of numbers, as ``12,-3,4.5,nan``; ``nan`` is an element without a value.
 
     Parameters
     ----------
     kind : "text"
+    numbers : "any" or "whole"
+        Whether they may have a sign, a point and an exponent, or are whole numbers from 0 on; then
+        a line that holds anything else is refused, as damaged on its way.
     prefix : str
         What a line of values begins with; other lines are passed over.
     separator : str
@@ -215,6 +218,7 @@ class Text(Record):
     """
 
     kind: Literal["text"]
+    numbers: Literal["any", "whole"] = "any"
     prefix: str = ""
     separator: Annotated[str, Field(min_length=1, max_length=1)] = ","
     trailing_separator: bool = False

@@ -126,9 +126,13 @@ class StoreWriter:
         self.close()
 
     def close(self) -> None:
-        """Write what is held, and let others write to the store."""
+        """Write what is held, and let others write to the store.
+
+        A first Ctrl-C waits meanwhile: what is held would be lost.
+        """
         try:
-            self.flush()
+            with uninterrupted(once=True):
+                self.flush()
         finally:
             self._sole.release()
 
@@ -149,14 +153,18 @@ class StoreWriter:
         """
         grid = _grid(frame.image)
         if not self._metadata:
-            self._create(grid)
-        if grid != self._grid:
+            with uninterrupted():  # a store without the frame it was made for is none
+                self._create(grid)
+                self._held.append(frame)
+        elif grid == self._grid:
+            self._held.append(frame)
+        else:
             raise DataError(str(self.path), f"holds {_said(self._grid)}; this one is {_said(grid)}")
-        self._held.append(frame)
         if len(self._held) >= self.chunk - self.n_written % self.chunk:
             self.flush()
 
     def _create(self, grid: dict[str, Any]) -> None:
+        """Make the store; nothing may interrupt this, as Zarr goes on in threads of its own."""
         attributes = {
             "format": FORMAT,
             "version": VERSION,
@@ -166,7 +174,7 @@ class StoreWriter:
         }
         # Made whole beside its name: a store whose making was cut short would never open.
         part = self.path.with_name(f".{self.path.name}.part")
-        with uninterrupted(), said(self.path):
+        with said(self.path):
             shutil.rmtree(part, ignore_errors=True)
             try:
                 self._metadata = self._make(part, attributes)

@@ -21,7 +21,7 @@ from tactile_graph.cli.arguments import (
     source_options,
 )
 from tactile_graph.cli.endings import SOME_FAILED, exited
-from tactile_graph.cli.interrupt import code_of, words_of
+from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
 from tactile_graph.cli.many.options import Workers
 from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.plot import IN_A_STRIP, Plot, check_plot, plot_of
@@ -218,7 +218,6 @@ class _Run:
         click.get_current_context().exit(code)
 
     def go(self) -> None:
-        from tactile_graph.cli.interrupt import Interrupts
         from tactile_graph.cli.output.progress import Bar
         from tactile_graph.cli.output.tally import Tally
         from tactile_graph.cli.terminal import console, stdout_for_programs
@@ -246,7 +245,7 @@ class _Run:
         self.bar = Bar(self.stderr, self.pipeline.name, shown=not on_screen)
         with Interrupts() as interrupts:
             with stdout_for_programs(self.output is not None and self.output.name == "-"):
-                self._frames(interrupts.held)
+                self._frames(interrupts)
             code = self._close()
         click.get_current_context().exit(code)
 
@@ -287,13 +286,14 @@ class _Run:
         warm_up()
         self.bar.now(expected)
 
-    def _frames(self, held: Any) -> None:
+    def _frames(self, interrupts: Interrupts) -> None:
         from tactile_graph.compiled import answered_meanwhile
 
         try:
             with answered_meanwhile(self._still_compiling):
                 for results in self._results():
-                    with held:
+                    interrupts.again()
+                    with interrupts.held:
                         self._take(results)
         except KeyboardInterrupt as error:
             self.interrupted = error
@@ -376,7 +376,10 @@ class _Run:
             self._finish_lines()
             came = self.interrupted
             self.tally.close(self.people, self.report, words_of(came) if came else "")
-            self._hints(self.drawing is not None and self.drawing.save(self.stderr))
+            drawn = self.drawing is not None and self.drawing.save(self.stderr)
+            if self.drawing is not None:
+                self.interrupted = came or self.drawing.interrupted
+            self._hints(drawn)
         if self.error is not None:
             raise self.error  # the command line shows it; what was done stands above
         if self.interrupted is not None:

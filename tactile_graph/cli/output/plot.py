@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from tactile_graph.errors import UsageError, did_you_mean
-from tactile_graph.files import check_target
+from tactile_graph.files import check_target, left_of
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -17,10 +17,19 @@ if TYPE_CHECKING:
 IN_A_STRIP = 12
 PICTURES = (".png", ".svg", ".pdf")
 FILMS = (".gif", ".mp4")
+PAINTING = "painting {done} of {total} pictures; Ctrl-C ends the film with those that are painted"
 
 
 class Plot(Protocol):
-    """Takes results while they come, and draws them in the end."""
+    """Takes results while they come, and draws them in the end.
+
+    Attributes
+    ----------
+    interrupted : KeyboardInterrupt or None
+        What ended the drawing before its time, if anything did.
+    """
+
+    interrupted: KeyboardInterrupt | None
 
     def add(self, result: Result) -> None:
         """Take in a frame."""
@@ -56,6 +65,8 @@ def plot_of(path: str, name: str, asked: tuple[str, ...]) -> Plot:
 
 
 class _Strip:
+    interrupted: KeyboardInterrupt | None = None
+
     def __init__(self, path: str) -> None:
         self._path = path
         self._kept: list[Result] = []
@@ -81,6 +92,7 @@ class _Film:
 
         self._path = path
         self._film = Film(name, asked)
+        self.interrupted: KeyboardInterrupt | None = None
 
     def add(self, result: Result) -> None:
         self._film.add(result)
@@ -90,17 +102,26 @@ class _Film:
             return False
         from tactile_graph.cli.output.progress import Bar
 
-        bar = Bar(stderr, "film")
+        painting = Bar(stderr, "painting", things="pictures", elsewhere=PAINTING)
+        older = left_of(Path(self._path))
         try:
-            self._film.write(self._path, bar.at)
+            self._film.write(self._path, painting.at)
+        except KeyboardInterrupt as error:
+            painting.stop()
+            if not self._film.written:
+                stderr.print(f"{self._path}: not written; {older}", style="yellow", soft_wrap=True)
+                raise
+            self.interrupted = error
         finally:
-            bar.stop()
+            painting.stop()
         return True
 
     def notes(self) -> Iterator[str]:
         from tactile_graph.draw.film import LONGEST_S, UNTIMED_S
 
         film = self._film
+        if film.n_painted < film.n:
+            yield f"stopped while painting: the film holds {film.n_painted} of {film.n} pictures"
         if film.full:
             yield f"the film holds the first {film.n} pictures; --frames A:B takes others"
         if film.shortened:

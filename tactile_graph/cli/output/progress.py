@@ -20,6 +20,8 @@ REDRAW_S = 0.1
 class Bar:
     """Counts frames; shows itself after a second, on a terminal only.
 
+    Elsewhere it may be a single line.
+
     Parameters
     ----------
     console : Console
@@ -28,11 +30,25 @@ class Bar:
         Stands before the bar.
     shown : bool
         False where it would disturb.
+    things : str
+        What it counts.
+    elsewhere : str
+        Printed once, after a second, where there is no terminal; ``{done}`` and ``{total}`` in it
+        say how far the work is.
     """
 
-    def __init__(self, console: Console, what: str, shown: bool = True) -> None:
+    def __init__(
+        self,
+        console: Console,
+        what: str,
+        shown: bool = True,
+        things: str = "frames",
+        elsewhere: str = "",
+    ) -> None:
         self._console = console
         self._what = what
+        self._things = things
+        self._elsewhere = "" if console.is_terminal else elsewhere
         self._next = time.monotonic() + WORTH_A_BAR_S
         self._progress: Progress | None = None
         self._task: TaskID | None = None
@@ -41,7 +57,13 @@ class Bar:
 
     def at(self, done: int, total: int | None) -> None:
         """Say how far the work is; ``total`` is None where nobody knows."""
-        if not self._shown or time.monotonic() < self._next:
+        if time.monotonic() < self._next:
+            return
+        if self._elsewhere:
+            told = self._elsewhere.format(done=done, total=total)
+            self._console.print(told, style="dim", soft_wrap=True)
+            self._elsewhere = ""
+        if not self._shown:
             return
         if self._progress is None:
             self._progress, self._task = self._start(done, total)
@@ -65,7 +87,7 @@ class Bar:
 
         progress = Progress(
             TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
-            TextColumn("frames"), TimeRemainingColumn(), console=self._console, transient=True,
+            TextColumn(self._things), TimeRemainingColumn(), console=self._console, transient=True,
         )  # fmt: skip
         progress.start()
         task = progress.add_task(self._what, completed=done, total=total)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import resource
+import signal
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +16,7 @@ from PIL import Image as Pillow
 from helpers_draw import circle_demo, discs, empty_frame
 from tactile_graph import Frame
 from tactile_graph.draw import film as films
+from tactile_graph.draw import film_files
 from tactile_graph.draw.film import Film
 from tactile_graph.errors import UsageError
 
@@ -137,3 +141,106 @@ def test_mp4_repeats_pictures_as_long_as_they_last(tmp_path: Path) -> None:
     n, seconds = library.count_frames_and_secs(str(tmp_path / "a.mp4"))
     assert (n, seconds) == (25, pytest.approx(1.0, abs=0.05))
     assert [p.name for p in tmp_path.iterdir()] == ["a.mp4"]
+
+
+@pytest.mark.slow
+def test_an_mp4_for_which_there_is_no_room_leaves_the_old_one_and_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No file of ffmpeg's can be larger than 4096 bytes, as if the disc were full then."""
+    pytest.importorskip("imageio_ffmpeg", reason="the 'film' extra is not installed")
+    old = tmp_path / "a.mp4"
+    old.write_bytes(b"old")
+    real = films.Mp4.__init__
+
+    def begin(self: films.Mp4, *args: object) -> None:
+        before = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, before[1]))
+        try:
+            real(self, *args)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+    monkeypatch.setattr(films.Mp4, "__init__", begin)
+    with pytest.raises(UsageError, match=r"a\.mp4: cannot be written: File too large"):
+        filmed(timed([0.0, 1.0]), old)
+    assert [p.name for p in tmp_path.iterdir()] == ["a.mp4"]
+    assert old.read_bytes() == b"old"
+
+
+ENDS = {
+    "before it has read a picture": (
+        "echo 'av_interleaved_write_frame(): No space left on device' >&2; exit 1",
+        "No space left on device",
+    ),
+    "when all is read": (
+        "cat > /dev/null; echo '[out#0] No space left on device' >&2; exit 228",
+        "No space left on device",
+    ),
+    "for a reason of its own": ("cat > /dev/null; echo odd >&2; exit 3", "ffmpeg: odd"),
+    "without a word": ("cat > /dev/null; exit 3", "ffmpeg: it ended with code 3"),
+}
+
+
+@pytest.mark.parametrize("end", ENDS)
+def test_what_ffmpeg_fails_with_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, end: str
+) -> None:
+    script, told = ENDS[end]
+    fake = tmp_path / "ffmpeg"
+    fake.write_text(f"#!/bin/sh\n{script}\n")
+    fake.chmod(0o700)
+    monkeypatch.setattr(
+        film_files, "ffmpeg", lambda: SimpleNamespace(get_ffmpeg_exe=lambda: str(fake))
+    )
+
+    def film() -> None:
+        with film_files.Mp4(tmp_path / "a.mp4", (400, 400)) as mp4:
+            mp4.add(np.zeros((400, 400, 3), np.uint8), 0.04)
+
+    with pytest.raises(OSError) as got:
+        film()
+    assert got.value.strerror == told
+
+
+def stopped(path: Path, times: int) -> Film:
+    """Return a film in whose second picture signals come, one after the other."""
+    film = Film("discs", ())
+    for result in circle_demo().stream(timed([0.0, 0.1, 0.2, 0.3])):
+        film.add(result)
+
+    def interrupt(done: int, n: int) -> None:
+        assert n == 4
+        for _ in range(times if done == 2 else 0):
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        film.write(path, interrupt)
+    return film
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("suffix", [".gif", ".mp4"])
+def test_ctrl_c_ends_a_film_with_the_picture_in_hand(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"a{suffix}"
+    if suffix == ".mp4":
+        library = pytest.importorskip("imageio_ffmpeg", reason="the 'film' extra is missing")
+    film = stopped(path, 1)
+    assert (film.n_painted, film.written) == (2, True)
+    if suffix == ".gif":
+        assert len(pictures(path)[0]) == 2
+    else:
+        assert library.count_frames_and_secs(str(path))[0] == 5
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("suffix", [".gif", ".mp4"])
+def test_ctrl_c_once_more_leaves_the_old_film_and_nothing_else(tmp_path: Path, suffix: str) -> None:
+    if suffix == ".mp4":
+        pytest.importorskip("imageio_ffmpeg", reason="the 'film' extra is missing")
+    path = tmp_path / f"a{suffix}"
+    path.write_bytes(b"old")
+    assert not stopped(path, 2).written
+    assert [p.name for p in tmp_path.iterdir()] == [path.name]
+    assert path.read_bytes() == b"old"

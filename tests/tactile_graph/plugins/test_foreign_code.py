@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import time
@@ -70,6 +71,17 @@ def test_ctrl_c_stays_what_it_is_when_what_is_imported_makes_another_error_of_it
             time.sleep(1.0)
         except BaseException as error:  # as compiled code does
             raise ValueError("cannot be built") from error
+        return ModuleType("bad")
+
+    with pytest.raises(KeyboardInterrupt):
+        registry(load)
+
+
+def test_ctrl_c_that_what_is_imported_passes_over_comes_when_it_is_imported() -> None:
+    def load() -> ModuleType:
+        with contextlib.suppress(BaseException):  # as a module that does without another one
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1.0)
         return ModuleType("bad")
 
     with pytest.raises(KeyboardInterrupt):

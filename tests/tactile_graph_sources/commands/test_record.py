@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import threading
@@ -76,6 +77,27 @@ def test_every_frame_is_recorded_and_gone_on_with(tmp_path: Path, pad: FakePad, 
         np.testing.assert_array_equal(frame.image.values, pads[i % 30])
         assert frame.device_time_s == pytest.approx(2e-3 * (i % 30))
     assert [f.index for f in read if f.gap] == [30]
+
+
+PRINTED = """preset: printed
+transport: {baud: 115200}
+framer: {kind: text}
+geometry: {rows: 2, columns: 3, quantity: gram}
+"""
+
+
+def test_what_a_board_prints_is_recorded_as_it_is(tmp_path: Path, pad: FakePad, sends) -> None:
+    preset, target = tmp_path / "printed.yaml", tmp_path / "a.zarr"
+    preset.write_text(PRINTED)
+    sends(b"0\n2.00,2.01,-2.02,nan,1e-3,5\r\n-1,-2,-3,-4,-5,-6\r\n1,2,3,4,5,6\r\n")
+    words = ["--port", str(pad.link), "--preset", str(preset), "--give-up", "20"]
+    result = recorded(target, *words, "--frames", 3)
+    assert result.exit_code == 0, result.output
+    first, second, third = (f.image for f in read_store(target))
+    assert first.filled(-9.0).tolist() == [[2.0, 2.01, -2.02], [-9.0, 0.001, 5.0]]
+    assert second.values.tolist() == [[-1.0, -2.0, -3.0], [-4.0, -5.0, -6.0]]
+    assert third.valid is None or third.valid.all()
+    assert first.quantity == "gram"
 
 
 def test_ctrl_c_keeps_what_was_recorded(
@@ -228,6 +250,70 @@ def test_frames_of_any_source_are_recorded_with_their_truth(tmp_path: Path) -> N
     frames = list(read_store(tmp_path / "a.zarr"))
     assert len(frames) == 3
     assert all(f.truth for f in frames)
+
+
+SIMULATED = ("--source", "simulate", "--with", "scene=discs")
+
+
+def recorded(target: Path, *args: object):
+    return CliRunner().invoke(cli, ["record", str(target), *map(str, args)])
+
+
+@pytest.mark.parametrize(
+    ("method", "n_kept"), [("_make", 1), ("_put", 3)], ids=["as it is made", "as it is closed"]
+)
+def test_ctrl_c_as_a_store_is_made_or_closed_loses_no_frame(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, method: str, n_kept: int
+) -> None:
+    real = getattr(StoreWriter, method)
+
+    def interrupted(self: StoreWriter, *args: object) -> object:
+        os.kill(os.getpid(), signal.SIGINT)
+        return real(self, *args)
+
+    monkeypatch.setattr(StoreWriter, method, interrupted)
+    target = tmp_path / "a.zarr"
+    result = recorded(target, *SIMULATED, "--frames", 3)
+    assert result.exit_code == 0, result.output
+    assert f"a.zarr: {n_kept} frame" in result.output
+    assert len(list(read_store(target))) == n_kept
+
+
+def test_a_signal_that_is_swallowed_on_its_way_ends_the_recording_at_the_next_frame(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = StoreWriter.write
+
+    def write(self: StoreWriter, frame: Frame) -> None:
+        real(self, frame)
+        with contextlib.suppress(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    monkeypatch.setattr(StoreWriter, "write", write)
+    result = recorded(tmp_path / "a.zarr", *SIMULATED, "--frames", 3)
+    assert result.exit_code == 128 + signal.SIGTERM
+    assert "a.zarr: 1 frame\n" in result.output
+
+
+def test_what_does_not_fit_is_told_alone_and_of_no_port(tmp_path: Path) -> None:
+    with StoreWriter(tmp_path / "a.zarr") as store:
+        store.write(Frame.of(np.zeros((3, 2)), (1.3, 1.0), quantity="volt"))
+    result = recorded(tmp_path / "a.zarr", *SIMULATED, "--frames", 3, "--append")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("error: ")
+    assert "a.zarr: holds 3 x 2 cells" in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+
+
+def test_only_a_pad_is_said_to_have_sent_bytes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tactile_graph_sources.commands.record._keep", interrupted)
+    result = recorded(tmp_path / "a.zarr", *SIMULATED)
+    assert result.stderr.endswith("a.zarr: no frame came, and nothing was written\n")
 
 
 @pytest.mark.parametrize(

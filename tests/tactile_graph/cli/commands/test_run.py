@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import json
@@ -441,6 +442,27 @@ def process(*args: str, **kwargs: object) -> subprocess.Popen[bytes]:
 
 
 ENDLESS = ("run", "circle-3", "--source", "simulate", "--frames", "1000000")
+
+
+def test_ctrl_c_that_is_swallowed_on_its_way_ends_the_run_at_the_next_frame(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As compiled modules swallow it while they are imported, without a word."""
+    from tactile_graph.cli.commands import run as module
+
+    real = module._Run._results
+
+    def deaf(self: module._Run) -> Iterator[object]:
+        for k, result in enumerate(real(self)):
+            if k == 2:
+                with contextlib.suppress(KeyboardInterrupt):
+                    signal.raise_signal(signal.SIGINT)
+            yield result
+
+    monkeypatch.setattr(module._Run, "_results", deaf)
+    got = call("run", "discs")
+    assert got.exit_code == 130
+    assert "2 frames in" in got.stdout
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from pathlib import Path
 
@@ -25,6 +26,27 @@ def test_run_writes_a_film_and_says_what_was_cut(
     monkeypatch.setattr(films, "MOST_PICTURES", 2)
     told = call("run", "discs", "--frames", 4, "--plot", "film.gif").output
     assert "the film holds the first 2 pictures; --frames A:B takes others" in told
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("times", [1, 2])
+def test_ctrl_c_while_a_film_is_painted_keeps_what_is_painted_unless_it_comes_again(
+    hand_made: Path, monkeypatch: pytest.MonkeyPatch, times: int
+) -> None:
+    real = films.Gif.add
+
+    def add(self: films.Gif, *args: object) -> None:
+        real(self, *args)
+        for _ in range(times):
+            signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(films.Gif, "add", add)
+    done = call("run", "discs", "--frames", 4, "--plot", "film.gif")
+    assert done.exit_code == 130
+    kept = "wrote film.gif\nstopped while painting: the film holds 1 of 4 pictures" in done.stdout
+    lost = "film.gif: not written; nothing of it is kept" in done.stderr
+    assert (kept, lost) == (times == 1, times == 2)
+    assert (hand_made / "film.gif").exists() == (times == 1)
 
 
 @pytest.mark.usefixtures("hand_made")

@@ -49,3 +49,17 @@ def test_short_work_shows_no_bar():
 @pytest.mark.parametrize(("terminal", "shown"), [(False, True), (True, False)])
 def test_no_bar_away_from_a_terminal_or_beside_the_table(terminal, shown):
     assert drawn(terminal, shown) == ""
+
+
+@pytest.mark.usefixtures("at_once")
+@pytest.mark.parametrize("terminal", [False, True])
+def test_away_from_a_terminal_it_may_be_a_single_line(terminal):
+    out = io.StringIO()
+    console = Console(file=out, force_terminal=terminal, width=100)
+    bar = Bar(console, "painting", things="pictures", elsewhere="painting {done} of {total}")
+    for i in range(3, 6):
+        bar.at(i, 50)
+    bar.stop()
+    told = out.getvalue()
+    assert ("pictures" in told) == terminal
+    assert (told == "painting 3 of 50\n") != terminal
