@@ -23,6 +23,7 @@ from tactile_graph_sources.readers.arrays.datasets import (
     is_stack,
     laid_of,
     numbered,
+    seconds,
     time_among,
 )
 from tactile_graph_sources.readers.arrays.stack import Axes, stack_of
@@ -264,8 +265,8 @@ def _foreign(reading: Reading, arrays: Archive) -> Held:
     single = [n for n, (s, t) in outlines.items() if math.prod(s) == 1 and t.kind in "iufU"]
     said = described(f"{n}: {arrays.load(n).item()}" for n in single)
     times = arrays.load(time) if time else None
-    if times is not None and len(times) and times.dtype.kind in "Mm":
-        times, time = (times - times[0]) / np.timedelta64(1, "s"), "time_s"
+    if times is not None:
+        times, time = seconds(times, time)
     return Held(values, what, said, times, time, known)
 
 
