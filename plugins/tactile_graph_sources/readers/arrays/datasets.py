@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
-from tactile_graph_sources.readers.arrays.stack import stack_of
+from tactile_graph_sources.readers.arrays.stack import MOST_CHANNELS, stack_of
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
@@ -169,6 +169,10 @@ def chosen(
         ]
         most = likely or [n for n, u in others.items() if u.remedy]
         remedy = f"; of {most[0]!r}: {others[most[0]].remedy}" if most else ""
+        if not likely and (
+            deep := [n for n, shape in shapes.items() if len(shape) > 2 and math.prod(shape)]
+        ):
+            remedy = f"; {_hint(deep[0], shapes[deep[0]], word)}"
         told = f"no matrix or stack of matrices in it; its {word}s: {listed}{remedy}"
         raise DataError(where, told)
     elif len(stacks) > 1:
@@ -182,6 +186,15 @@ def chosen(
             f"{MOST_VALUES:,}: save a part of it, or all as .npy, which is read piece by piece",
         )
     return name
+
+
+def _hint(name: str, shape: tuple[int, ...], word: str) -> str:
+    """Return what to do with an array that has the axes of no stack."""
+    if len(shape) == 3:
+        return f"{name!r} is read where sensor names it"
+    if shape[-1] <= MOST_CHANNELS:
+        return f"save one channel of {name!r}, array[..., 0], as a new {word}"
+    return f"save each sensor of {name!r} as a new {word}"
 
 
 def is_stack(shape: tuple[int, ...]) -> bool:

@@ -19,6 +19,7 @@ from tactile_graph_sources.readers.arrays.datasets import (
     time_among,
 )
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.words.names import named
 from tactile_graph_sources.readers.words.preamble import described
 
 _NOT_READ = {
@@ -59,6 +60,24 @@ class Group(NamedTuple):
     load: Callable[[Any], Any]
 
 
+def attributes_of(item: Any) -> dict[str, Any]:
+    """Return the attributes of a file, a group or an array, as far as they can be read."""
+    found = {}
+    for key in item.attrs:
+        try:
+            found[key] = item.attrs[key]
+        except Exception:  # of a type that the library does not know
+            continue
+    return found
+
+
+def _with_unit(name: str, unit: object) -> str:
+    """Return the name of times with the unit that an attribute says: ``milliseconds since …``."""
+    text = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit or "")
+    told = f"{bare(name)} ({text.partition(' since ')[0].strip()})"
+    return told if named((told, "")).time_factor is not None else name
+
+
 def unread(dtype: np.dtype[Any], shape: tuple[int, ...]) -> Unread | None:
     """Return why an array of such a type is not read; None where it may be."""
     if dtype.names == ("real", "imag"):  # as MATLAB writes it
@@ -91,8 +110,11 @@ def held_in(reading: Reading, group: Group) -> Held:
     group.check({n: a for n, a in {**numbers, **timed}.items() if n in read})
     values = np.stack([numbers[n][()] for n in frames]) if frames else None
     values = group.load(numbers[name]) if values is None else values
-    times, time = seconds(timed[time][()].ravel(), time) if time else (None, "")
-    attributes = {**group.attributes, **numbers[name].attrs}
+    times = None
+    if time:
+        values_of, unit = timed[time][()].ravel(), attributes_of(timed[time]).get("units")
+        times, time = seconds(values_of, _with_unit(time, unit))
+    attributes = {**group.attributes, **attributes_of(numbers[name])}
     attributes |= {bare(n): np.asarray(a[()]).item() for n, a in numbers.items() if a.size == 1}
     said = described(f"{k}: {v}" for k, v in attributes.items() if np.ndim(v) == 0)
     what = f"{group.word} {name!r}"

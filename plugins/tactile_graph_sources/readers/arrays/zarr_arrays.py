@@ -20,7 +20,7 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays import node_images
 from tactile_graph_sources.readers.arrays.datasets import Held, Unread, frames_of
-from tactile_graph_sources.readers.arrays.groups import Group, held_in, unread
+from tactile_graph_sources.readers.arrays.groups import Group, attributes_of, held_in, unread
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
@@ -87,7 +87,7 @@ def _held(reading: Reading, zarr: Any) -> Held:
         attributes = {}
     else:
         members = islice(root.members(max_depth=DEEPEST), MOST_ITEMS + 1)
-        attributes = dict(root.attrs)
+        attributes = attributes_of(root)
     arrays: dict[str, Any] = {}
     others: dict[str, Unread] = {}
     for n, (name, item) in enumerate(members, 1):
