@@ -169,9 +169,8 @@ def chosen(
         ]
         most = likely or [n for n, u in others.items() if u.remedy]
         remedy = f"; of {most[0]!r}: {others[most[0]].remedy}" if most else ""
-        if not likely and (
-            deep := [n for n, shape in shapes.items() if len(shape) > 2 and math.prod(shape)]
-        ):
+        deep = [n for n, shape in shapes.items() if len(shape) > 2 and 0 not in shape]
+        if deep and not likely:
             remedy = f"; {_hint(deep[0], shapes[deep[0]], word)}"
         told = f"no matrix or stack of matrices in it; its {word}s: {listed}{remedy}"
         raise DataError(where, told)
