@@ -10,6 +10,7 @@ import os
 import struct
 import zlib
 from collections.abc import Iterator
+from functools import cached_property
 from io import BytesIO
 from typing import Any, BinaryIO, NamedTuple
 
@@ -177,12 +178,12 @@ def _cut_off(
         yield Lost(f"byte {record.at}", told)
     else:
         there = f"{record.held:,} of its {record.size:,} bytes are there"
-        told = f"the log is cut off within {record.name}: {there}; what is there is read"
+        told = f"the log is cut off within {record.name}: {there}"
         yield Lost(AT_END, told)
 
 
 class _Channels:
-    """The channels that are known so far, those of the index among them."""
+    """The channels that are known so far; of one that is lost the index may know."""
 
     def __init__(self, index: bytes) -> None:
         from mcap.data_stream import ReadDataStream
@@ -190,10 +191,9 @@ class _Channels:
 
         self._readers: dict[int, Any] = {SCHEMA: Schema.read, CHANNEL: Channel.read}
         self._stream = ReadDataStream
-        self._schemas: dict[int, str] = {}
-        self._known: dict[int, Any] = {}
-        for kind, record, _ in _records_in(index):
-            self._take(kind, record)
+        self._index = index
+        self._told: dict[tuple[int, bytes], bytes] = {}
+        self._known: dict[int, tuple[str, str, str] | None] = {}
 
     def messages_in(self, data: bytes, at: int) -> Iterator[Message | Lost]:
         """Yield the messages of the records that follow one another, at a place of the file."""
@@ -202,35 +202,46 @@ class _Channels:
             end = after
             if kind == MESSAGE and len(record) >= _MESSAGE.size:
                 number, _, time_ns, _ = _MESSAGE.unpack_from(record)
-                channel = self._known.get(number)
+                if number not in self._known:
+                    self._known[number] = self._found(number)
+                channel = self._known[number]
                 if channel is None:
                     unknown += 1
-                    continue
-                schema = self._schemas.get(channel.schema_id, "")
-                body = record[_MESSAGE.size :]
-                yield Message(channel.topic, channel.message_encoding, schema, time_ns, body)
+                else:
+                    yield Message(*channel, time_ns, record[_MESSAGE.size :])
             elif kind == MESSAGE:
                 yield Lost(place, "a message is too short to be one")
-            elif told := self._take(kind, record):
-                yield Lost(place, told)
+            elif kind in self._readers:
+                self._told[kind, record[:2]] = record
         if unknown:
             yield Lost(place, f"{unknown} messages are of a channel that nothing describes")
         if end < len(data):
             yield Lost(place, f"the last {len(data) - end:,} bytes of a chunk are damaged")
 
-    def _take(self, kind: int, record: bytes) -> str:
-        """Take a schema or a channel; returns what is wrong with it."""
-        if kind not in self._readers:
-            return ""
-        try:
-            found = self._readers[kind](self._stream(BytesIO(record)))
-        except Exception:  # the library believes every length, and has a dozen kinds of errors
-            return f"{_NAMES[kind]} is damaged"
-        if kind == SCHEMA:
-            self._schemas[found.id] = found.name
-        else:
-            self._known[found.id] = found
-        return ""
+    @cached_property
+    def _in_index(self) -> dict[tuple[int, bytes], bytes]:
+        return {
+            (kind, r[:2]): r for kind, r, _ in _records_in(self._index) if kind in self._readers
+        }
+
+    def _found(self, number: int) -> tuple[str, str, str] | None:
+        """Return topic, encoding and schema of a channel; None where nothing describes it."""
+        channel = self._read(CHANNEL, number)
+        if channel is None:
+            return None
+        schema = self._read(SCHEMA, channel.schema_id) if channel.schema_id else None
+        return channel.topic, channel.message_encoding, "" if schema is None else schema.name
+
+    def _read(self, kind: int, number: int) -> Any:
+        """Return a channel or a schema, of the data or of the index."""
+        key = (kind, struct.pack("<H", number))
+        for record in (self._told.get(key), self._in_index.get(key)):
+            if record is not None:
+                try:
+                    return self._readers[kind](self._stream(BytesIO(record)))
+                except Exception:  # the library believes every length, and has a dozen kinds
+                    continue
+        return None
 
 
 def _records_in(data: bytes) -> Iterator[tuple[int, bytes, int]]:
