@@ -44,8 +44,8 @@ class Group(NamedTuple):
         Name -> array of h5py or Zarr: of numbers, of dates, or with fields.
     unread : mapping
         Name -> what is there and why it is not read.
-    attributes : mapping
-        Those of the whole.
+    root : File, Group or None
+        Whose attributes hold for all of it.
     check : callable
         Refuses arrays, by name, that are too large to be read.
     load : callable
@@ -55,15 +55,15 @@ class Group(NamedTuple):
     word: str
     arrays: Mapping[str, Any]
     unread: Mapping[str, Unread]
-    attributes: Mapping[str, Any]
+    root: Any
     check: Callable[[Mapping[str, Any]], None]
     load: Callable[[Any], Any]
 
 
-def attributes_of(item: Any) -> dict[str, Any]:
+def _attributes_of(item: Any) -> dict[str, Any]:
     """Return the attributes of a file, a group or an array, as far as they can be read."""
-    found = {}
-    for key in item.attrs:
+    found: dict[str, Any] = {}
+    for key in () if item is None else item.attrs:
         try:
             found[key] = item.attrs[key]
         except Exception:  # of a type that the library does not know
@@ -112,9 +112,9 @@ def held_in(reading: Reading, group: Group) -> Held:
     values = group.load(numbers[name]) if values is None else values
     times = None
     if time:
-        values_of, unit = timed[time][()].ravel(), attributes_of(timed[time]).get("units")
+        values_of, unit = timed[time][()].ravel(), _attributes_of(timed[time]).get("units")
         times, time = seconds(values_of, _with_unit(time, unit))
-    attributes = {**group.attributes, **attributes_of(numbers[name])}
+    attributes = {**_attributes_of(group.root), **_attributes_of(numbers[name])}
     attributes |= {bare(n): np.asarray(a[()]).item() for n, a in numbers.items() if a.size == 1}
     said = described(f"{k}: {v}" for k, v in attributes.items() if np.ndim(v) == 0)
     what = f"{group.word} {name!r}"

@@ -14,7 +14,7 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays import node_images
 from tactile_graph_sources.readers.arrays.datasets import Held, Unread, frames_of
-from tactile_graph_sources.readers.arrays.groups import Group, attributes_of, held_in, unread
+from tactile_graph_sources.readers.arrays.groups import Group, held_in, unread
 from tactile_graph_sources.readers.arrays.matlab import frames_first
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
@@ -90,7 +90,7 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
             numbers = {n: d for n, d in sets.items() if d.dtype.kind in "buif"}
             _refuse_cells(where, numbers, [n for n, u in others.items() if u.what == _REFERENCES])
             check = partial(_check_size, where)
-            group = Group("dataset", sets, others, attributes_of(file), check, lambda d: d[()])
+            group = Group("dataset", sets, others, file, check, lambda d: d[()])
             return held_in(reading, group)
     except DataError:
         raise

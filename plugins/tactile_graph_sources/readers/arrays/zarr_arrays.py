@@ -20,7 +20,7 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays import node_images
 from tactile_graph_sources.readers.arrays.datasets import Held, Unread, frames_of
-from tactile_graph_sources.readers.arrays.groups import Group, attributes_of, held_in, unread
+from tactile_graph_sources.readers.arrays.groups import Group, held_in, unread
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
@@ -82,12 +82,11 @@ def read(reading: Reading) -> Iterator[Frame]:
 def _held(reading: Reading, zarr: Any) -> Held:
     where = str(reading.path)
     root = zarr.open(str(reading.path), mode="r")
-    if isinstance(root, zarr.Array):
+    whole = None if isinstance(root, zarr.Array) else root
+    if whole is None:
         members: Iterable[tuple[str, Any]] = [(_bare_name(reading.path), root)]
-        attributes = {}
     else:
-        members = islice(root.members(max_depth=DEEPEST), MOST_ITEMS + 1)
-        attributes = attributes_of(root)
+        members = islice(whole.members(max_depth=DEEPEST), MOST_ITEMS + 1)
     arrays: dict[str, Any] = {}
     others: dict[str, Unread] = {}
     for n, (name, item) in enumerate(members, 1):
@@ -100,7 +99,7 @@ def _held(reading: Reading, zarr: Any) -> Held:
             else:
                 others[name] = why
     check = partial(_check_size, where)
-    return held_in(reading, Group("array", arrays, others, attributes, check, _loaded))
+    return held_in(reading, Group("array", arrays, others, whole, check, _loaded))
 
 
 def _bare_name(path: Path) -> str:
