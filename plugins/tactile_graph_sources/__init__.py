@@ -25,6 +25,7 @@ _FORMATS = {
     "table-of-matrices": "text.stacked:FORMAT",
     "table-of-frames": "text.flat:FORMAT",
     "node-images": "arrays.node_images:STORE",
+    "zarr-arrays": "arrays.zarr_arrays:FORMAT",
     "picture-folder": "arrays.pictures:FOLDER",
     "recording-store": "arrays.stored_frames:STORE",
     "numbered-files": "sequence.numbered:FOLDER",

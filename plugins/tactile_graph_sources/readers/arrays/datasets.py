@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
-from tactile_graph_sources.readers.arrays.stack import stack_of
+from tactile_graph_sources.readers.arrays.stack import MOST_CHANNELS, stack_of
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
@@ -50,6 +51,17 @@ class Held(NamedTuple):
     times: NDArray[Any] | None = None
     times_name: str = ""
     known: bool = False
+
+
+class Unread(NamedTuple):
+    """An array that is there and not read: what it is, and what to do about it."""
+
+    what: str
+    remedy: str = ""
+    shape: tuple[int, ...] | None = None
+
+    def __str__(self) -> str:
+        return f"{'' if self.shape is None else f'{self.shape}, '}{self.what}"
 
 
 def frames_of(reading: Reading, held: Held) -> Iterator[Any]:
@@ -115,7 +127,12 @@ def _refuse_lone_matrix(reading: Reading, held: Held) -> None:
         )
 
 
-def chosen(reading: Reading, shapes: Mapping[str, tuple[int, ...]], word: str) -> str:
+def chosen(
+    reading: Reading,
+    shapes: Mapping[str, tuple[int, ...]],
+    word: str,
+    unread: Mapping[str, Unread] | None = None,
+) -> str:
     """Return the name of the only stack, or of what ``sensor`` names.
 
     Parameters
@@ -125,37 +142,66 @@ def chosen(reading: Reading, shapes: Mapping[str, tuple[int, ...]], word: str) -
         Name -> shape of each array of numbers.
     word : str
         What messages call an array: ``dataset``, ``variable``.
+    unread : mapping, optional
+        Name -> what else is there, and why it is not read.
 
     Raises
     ------
     DataError
         If there is none, or several could be meant, or the one is too large.
     """
-    where, asked = str(reading.path), reading.told.sensor
+    where, asked, others = str(reading.path), reading.told.sensor, unread or {}
     stacks = [n for n, s in shapes.items() if is_stack(s)]
     listed = one_of(f"{n} {s}" for n, s in shapes.items())
     if asked:
+        if found := others.get(asked):
+            remedy = f"; {found.remedy}" if found.remedy else ""
+            raise DataError(where, f"{word} {asked!r} is not read: {found}{remedy}")
         if asked not in shapes:
             near = did_you_mean(asked, shapes)
             raise DataError(where, f"no {word} {asked!r}, there are {one_of(shapes)}{near}")
         reading.sensors[asked] = None
     elif not stacks:
-        raise DataError(where, f"no matrix or stack of matrices in it; its {word}s: {listed}")
+        listed = one_of([*(f"{n} {s}" for n, s in shapes.items()),
+                         *(f"{n} ({u})" for n, u in others.items())])  # fmt: skip
+        likely = [
+            n for n, u in others.items() if u.remedy and (u.shape is None or is_stack(u.shape))
+        ]
+        most = likely or [n for n, u in others.items() if u.remedy]
+        remedy = f"; of {most[0]!r}: {others[most[0]].remedy}" if most else ""
+        deep = [n for n, shape in shapes.items() if len(shape) > 2 and 0 not in shape]
+        if deep and not likely:
+            remedy = f"; {_hint(deep[0], shapes[deep[0]], word)}"
+        told = f"no matrix or stack of matrices in it; its {word}s: {listed}{remedy}"
+        raise DataError(where, told)
     elif len(stacks) > 1:
         told = f"several {word}s could be it ({listed}); name one with sensor"
         raise SeveralSensorsError(where, told, stacks)
     name = asked or stacks[0]
-    if int(np.prod(shapes[name])) > MOST_VALUES:
-        raise DataError(where, f"{word} {name!r} holds {int(np.prod(shapes[name]))} values")
+    if (n := math.prod(shapes[name])) > MOST_VALUES:
+        raise DataError(
+            where,
+            f"{word} {name!r} of shape {shapes[name]} holds {n:,} values; allowed are "
+            f"{MOST_VALUES:,}: save a part of it, or all as .npy, which is read piece by piece",
+        )
     return name
+
+
+def _hint(name: str, shape: tuple[int, ...], word: str) -> str:
+    """Return what to do with an array that has the axes of no stack."""
+    if len(shape) == 3:
+        return f"{name!r} is read where sensor names it"
+    if shape[-1] <= MOST_CHANNELS:
+        return f"save one channel of {name!r}, array[..., 0], as a new {word}"
+    return f"save each sensor of {name!r} as a new {word}"
 
 
 def is_stack(shape: tuple[int, ...]) -> bool:
     """Return whether an array of such a shape may be a matrix or matrices, of one channel each."""
     axes = [n for n in shape[1:] if n != 1] if len(shape) > 3 else shape
     if len(shape) > 3:
-        return len(axes) == 2
-    return len(shape) in (2, 3) and min(shape) > 1
+        return len(axes) == 2 and min(shape) > 0
+    return len(shape) in (2, 3) and min(shape[-2:]) > 1 and shape[0] > 0
 
 
 def numbered(shapes: Mapping[str, tuple[int, ...]]) -> list[str]:
@@ -174,6 +220,13 @@ def numbered(shapes: Mapping[str, tuple[int, ...]]) -> list[str]:
     if len(shapes[next(iter(found))]) != 2 or not (not word or word in _FRAME_WORDS):
         return []
     return sorted(found, key=lambda n: int(m[2]) if (m := found[n]) else 0)
+
+
+def seconds(times: NDArray[Any], name: str) -> tuple[NDArray[Any], str]:
+    """Return times as numbers, and what they are then called: dates become seconds."""
+    if times.dtype.kind not in "Mm" or not len(times):
+        return times, name
+    return (times - times[0]) / np.timedelta64(1, "s"), "time_s"
 
 
 def time_among(names: Iterable[str]) -> str:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Iterator, Mapping
+from functools import partial
 from types import ModuleType
 from typing import Any
 
@@ -11,23 +13,16 @@ import numpy as np
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays import node_images
-from tactile_graph_sources.readers.arrays.datasets import (
-    Held,
-    bare,
-    chosen,
-    frames_of,
-    is_stack,
-    numbered,
-    time_among,
-)
+from tactile_graph_sources.readers.arrays.datasets import Held, Unread, frames_of
+from tactile_graph_sources.readers.arrays.groups import Group, held_in, unread
 from tactile_graph_sources.readers.arrays.matlab import frames_first
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
-from tactile_graph_sources.readers.words.preamble import described
 
 _MARK = b"\x89HDF\r\n\x1a\n"
 _MATLAB = b"MATLAB 7.3"
+_REFERENCES = "references"
 _ITEMS = "#refs#/"
 """Where it keeps what its cell arrays hold."""
 LARGE, MOST_TIMES = 64_000_000, 200
@@ -91,28 +86,16 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
     where = str(reading.path)
     try:
         with h5py.File(reading.path, "r") as file:
-            sets = _datasets(where, h5py, file)
+            sets, others = _datasets(where, h5py, file)
             numbers = {n: d for n, d in sets.items() if d.dtype.kind in "buif"}
-            _refuse_cells(where, numbers, [n for n, d in sets.items() if d.dtype.kind == "O"])
-            shapes = {n: d.shape for n, d in numbers.items()}
-            _refuse_fields(where, shapes, {n: d.dtype.names for n, d in sets.items()})
-            frames = [] if reading.told.sensor else numbered(shapes)
-            name = frames[0] if frames else chosen(reading, shapes, "dataset")
-            read = {*(frames or [name]), time_among(numbers)}
-            _check_size(where, {n: d for n, d in numbers.items() if n in read})
-            values = np.stack([numbers[n][()] for n in frames]) if frames else numbers[name][()]
-            time = time_among(n for n, d in numbers.items() if d.ndim == 1 or 1 in d.shape)
-            times = numbers[time][()].ravel() if time else None
-            attributes = {**file.attrs, **numbers[name].attrs}
-            attributes |= {bare(n): d[()].item() for n, d in numbers.items() if d.size == 1}
-            lines = [f"{k}: {v}" for k, v in attributes.items() if np.ndim(v) == 0]
+            _refuse_cells(where, numbers, [n for n, u in others.items() if u.what == _REFERENCES])
+            check = partial(_check_size, where)
+            group = Group("dataset", sets, others, file, check, lambda d: d[()])
+            return held_in(reading, group)
     except DataError:
         raise
     except Exception as error:  # HDF5 has a dozen kinds of errors over damaged files
         raise DataError(where, f"the HDF5 file cannot be read: {str(error)[:120]}") from error
-    said = described(lines)
-    what = f"datasets {frames[0]!r} to {frames[-1]!r}" if frames else f"dataset {name!r}"
-    return Held(values, what, said, times, time, bool(frames))
 
 
 def _refuse_cells(where: str, numbers: Mapping[str, Any], others: list[str]) -> None:
@@ -124,22 +107,11 @@ def _refuse_cells(where: str, numbers: Mapping[str, Any], others: list[str]) -> 
         raise DataError(where, told)
 
 
-def _refuse_fields(
-    where: str, shapes: Mapping[str, tuple[int, ...]], fields: Mapping[str, Any]
-) -> None:
-    """Refuse a file whose only matrices may be fields of a dataset."""
-    name = next((n for n, names in fields.items() if names), "")
-    if name and not any(map(is_stack, shapes.values())):
-        raise DataError(
-            where,
-            f"dataset {name!r} has fields ({', '.join(fields[name])}); save the one with the cells "
-            f"as a dataset of its own, in Python: file['frames'] = file[{name!r}][field]",
-        )
-
-
-def _datasets(where: str, h5py: ModuleType, file: Any) -> dict[str, Any]:
-    """Return the datasets of a file by name."""
+def _datasets(where: str, h5py: ModuleType, file: Any) -> tuple[dict[str, Any], dict[str, Unread]]:
+    """Return the datasets of a file by name, and what is in it that is not read."""
     found: dict[str, Any] = {}
+    others: dict[str, Unread] = {}
+    names: set[str] = set()
     n = 0
 
     def visit(name: str, item: Any) -> str | None:
@@ -149,14 +121,46 @@ def _datasets(where: str, h5py: ModuleType, file: Any) -> dict[str, Any]:
             return f"more than {MOST_ITEMS} groups and datasets"
         if name.count("/") > DEEPEST:
             return f"groups more than {DEEPEST} deep"
+        names.add(name)
         if isinstance(item, h5py.Dataset):
-            found[name] = item
+            why = _why_unread(h5py, item)
+            if why is None:
+                found[name] = item
+            else:
+                others[name] = why
         return None
+
+    def follow(name: str, link: Any) -> None:
+        if isinstance(link, h5py.ExternalLink):
+            told = f"a link to {link.path!r} in the file {link.filename!r}, which is not opened"
+            others[name] = Unread(told, "give that file, or save its values in this one")
+        elif isinstance(link, h5py.SoftLink):  # its end is not asked for: it may be another file's
+            target = posixpath.normpath(posixpath.join("/", posixpath.dirname(name), link.path))
+            if target[1:] not in names:
+                others[name] = Unread(f"a link to {link.path!r}, where there is nothing to read")
 
     too_much = file.visititems(visit)
     if too_much is not None:
         raise DataError(where, f"it holds {too_much}")
-    return found
+    file.visititems_links(follow)
+    return found, others
+
+
+def _why_unread(h5py: ModuleType, dataset: Any) -> Unread | None:
+    """Return why a dataset is not read; None where it may be."""
+    if dataset.shape is None:
+        return Unread("empty")
+    if h5py.check_string_dtype(dataset.dtype) or _class_of(dataset) == "char":
+        return unread(np.dtype("S1"), dataset.shape)
+    if h5py.check_ref_dtype(dataset.dtype):
+        return Unread(_REFERENCES, "", dataset.shape)
+    return unread(dataset.dtype, dataset.shape)
+
+
+def _class_of(dataset: Any) -> str:
+    """Return what MATLAB calls the type of a variable."""
+    found = dataset.attrs.get("MATLAB_class", b"")
+    return found.decode("latin-1") if isinstance(found, bytes) else str(found)
 
 
 def _check_size(where: str, datasets: Mapping[str, Any]) -> None:

@@ -52,14 +52,6 @@ def _stack(reading: Reading) -> NDArray[Any]:
         array = np.load(reading.path, mmap_mode="r", allow_pickle=False)
     except Exception as error:  # NumPy raises a dozen kinds over a damaged header
         raise DataError(str(reading.path), f"its array cannot be read: {_words(error)}") from error
-    if array.dtype.names:
-        name = next((n for n in array.dtype.names if array.dtype[n].shape), array.dtype.names[0])
-        fields = ", ".join(array.dtype.names)
-        raise DataError(
-            str(reading.path),
-            f"its array has fields ({fields}); save the one with the cells alone: "
-            f"numpy.save('out.npy', array[{name!r}])",
-        )
     return stack_of(reading, array, "its array")
 
 

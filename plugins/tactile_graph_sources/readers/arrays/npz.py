@@ -23,6 +23,7 @@ from tactile_graph_sources.readers.arrays.datasets import (
     is_stack,
     laid_of,
     numbered,
+    seconds,
     time_among,
 )
 from tactile_graph_sources.readers.arrays.stack import Axes, stack_of
@@ -264,8 +265,8 @@ def _foreign(reading: Reading, arrays: Archive) -> Held:
     single = [n for n, (s, t) in outlines.items() if math.prod(s) == 1 and t.kind in "iufU"]
     said = described(f"{n}: {arrays.load(n).item()}" for n in single)
     times = arrays.load(time) if time else None
-    if times is not None and len(times) and times.dtype.kind in "Mm":
-        times, time = (times - times[0]) / np.timedelta64(1, "s"), "time_s"
+    if times is not None:
+        times, time = seconds(times, time)
     return Held(values, what, said, times, time, known)
 
 
@@ -287,7 +288,10 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str, bool]:
         return np.stack([arrays.load(n) for n in frames]), what, True
     if len(stacks) == 1:
         return _checked(reading, arrays, stacks[0]), f"array {stacks[0]!r}", False
-    shapes = one_of(f"{n} {shape}" for n, (shape, _) in outlines.items())
+    shapes = one_of(
+        f"{n} {shape}" + ("" if t.kind in "buif" else f" of {_kind_of(t)}")
+        for n, (shape, t) in outlines.items()
+    )
     if stacks:
         told = f"several arrays could be it ({shapes}); name one with sensor"
         raise SeveralSensorsError(where, told, stacks)
@@ -295,14 +299,27 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str, bool]:
         raise DataError(where, f"it holds no array but {one_of(arrays.held)}; {_UNPACK}")
     deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
     hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
+    if fields := [n for n, (_, t) in outlines.items() if t.names]:
+        hint = f"; save the field of {fields[0]!r} with the cells: array[field]"
+    if odd := [n for n, (s, t) in outlines.items() if t.kind == "U" and len(s) in (2, 3)]:
+        hint = f"; save {odd[0]!r} as numbers: array.astype(float)"
     if odd := [n for n, (s, t) in outlines.items() if t.kind == "c" and len(s) in (2, 3)]:
-        hint = f"; {odd[0]!r} is complex; save it as real numbers: {odd[0]}.real, or numpy.abs(…)"
+        hint = f"; {odd[0]!r} is complex; save it as real numbers: array.real, or numpy.abs(…)"
     if objects := [n for n, (_, t) in outlines.items() if t.kind == "O"]:
         hint = (
             f"; {objects[0]!r} holds Python objects, which are not opened, as they may run any "
             f"program; save them as numbers: numpy.savez('out.npz', frames=numpy.stack(frames))"
         )
     raise DataError(where, f"no matrix or stack of matrices in it; its arrays: {shapes}{hint}")
+
+
+def _kind_of(dtype: np.dtype[Any]) -> str:
+    """Return in words what an array holds that is no array of numbers."""
+    if dtype.names:
+        return f"fields ({', '.join(dtype.names)})"
+    words = {"c": "complex numbers", "O": "objects", "U": "text", "S": "text", "M": "dates",
+             "m": "times"}  # fmt: skip
+    return words.get(dtype.kind, str(dtype))
 
 
 def _pair(arrays: Archive, name: str, smallest: float) -> tuple[float, float] | None:

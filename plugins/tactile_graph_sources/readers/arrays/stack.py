@@ -57,6 +57,13 @@ def stack_of(
         If it holds no numbers, no frame, or has other axes.
     """
     where = str(reading.path)
+    if fields := array.dtype.names:
+        field = next((n for n in fields if array.dtype[n].shape), fields[0])
+        raise DataError(
+            where,
+            f"{name} has fields ({', '.join(fields)}); save the one with the cells alone: "
+            f"numpy.save('out.npy', array[{field!r}])",
+        )
     if array.dtype.kind not in "buif":
         told = f"{name} holds {array.dtype}, not real numbers; save it as {_AS_REAL}"
         raise DataError(where, told.format("real" if array.dtype.kind == "c" else "astype(float)"))
@@ -74,6 +81,8 @@ def stack_of(
             array = np.moveaxis(array, -1, 0)
     if array.ndim in (2, 3) and 0 in array.shape:
         raise DataError(where, f"{name} has shape {array.shape}: it holds no cell")
+    if array.ndim == 0:
+        raise DataError(where, f"{name} is one number, no matrix")
     if array.ndim not in (2, 3):
         raise DataError(
             where,

@@ -5,16 +5,21 @@ MCAP specification, https://mcap.dev/spec, sections "Records" and "Chunk".
 
 from __future__ import annotations
 
-import os
-import struct
 from pathlib import Path
 from typing import BinaryIO
 
 from tactile_graph.errors import DataError
+from tactile_graph_sources.readers.logs.mcap_records import (
+    CHUNK,
+    RECORD,
+    SIZES,
+    Lost,
+    Summary,
+    records_of,
+)
 
 LARGE, MOST_TIMES = 64_000_000, 100
 """Bytes in all that chunks may unpack to however small they are packed; and how many times."""
-_MAGIC_BYTES, _CHUNK, _RECORD, _SIZES = 8, 6, struct.Struct("<BQ"), struct.Struct("<QQQII")
 
 
 def check_chunks(path: Path) -> None:
@@ -37,22 +42,22 @@ def check_chunks(path: Path) -> None:
 
 def _unpacked_bytes(file: BinaryIO, most: int) -> int:
     """Return to how many bytes all chunks unpack, or more than is allowed as soon as that is so."""
-    end = file.seek(0, os.SEEK_END)
-    at, unpacked = _MAGIC_BYTES, 0
-    while at + _RECORD.size <= end and unpacked <= most:
-        file.seek(at)
-        kind, size = _RECORD.unpack(file.read(_RECORD.size))
-        if kind == _CHUNK and at + _RECORD.size + size <= end and size >= _SIZES.size + 8:
-            unpacked += _of_chunk(file.read(size), most - unpacked)
-        at += _RECORD.size + size
+    unpacked = 0
+    for record in records_of(file, Summary(file)):
+        if isinstance(record, Lost) or record.kind != CHUNK or record.held < SIZES.size + 8:
+            continue
+        file.seek(record.at + RECORD.size)
+        unpacked += _of_chunk(file.read(record.held), most - unpacked)
+        if unpacked > most:
+            break
     return unpacked
 
 
 def _of_chunk(data: bytes, most: int) -> int:
     """Return to how many bytes a chunk unpacks, by its own word and by what is packed."""
-    _, _, said, _, length = _SIZES.unpack_from(data)
-    packing = data[_SIZES.size : _SIZES.size + length]
-    packed = data[_SIZES.size + length + 8 :]
+    _, _, said, _, length = SIZES.unpack_from(data)
+    packing = data[SIZES.size : SIZES.size + length]
+    packed = data[SIZES.size + length + 8 :]
     if packing == b"zstd":
         import zstandard
 

@@ -7,7 +7,7 @@ libraries of types are not needed for these.
 from __future__ import annotations
 
 import json
-import sys
+from bisect import bisect_left
 from collections.abc import Iterator
 from typing import Any
 
@@ -17,17 +17,16 @@ from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.logs.cdr import decoder_of
 from tactile_graph_sources.readers.logs.mcap_chunks import check_chunks
+from tactile_graph_sources.readers.logs.mcap_records import MAGIC, Lost, Message, messages_of
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.text.json_stack import Damage, Entries, entries_of, frames_of
 from tactile_graph_sources.readers.words.preamble import Described
 
-_MARK = b"\x89MCAP0\r\n"
-
 
 def recognises(head: Head) -> bool:
     """Return whether the file starts as MCAP does."""
-    return head.raw.startswith(_MARK)
+    return head.raw.startswith(MAGIC)
 
 
 def read(reading: Reading) -> Iterator[Frame]:
@@ -40,7 +39,7 @@ def read(reading: Reading) -> Iterator[Frame]:
         meant.
     """
     where = str(reading.path)
-    topics, end = _topics(reading)
+    topics = _topics(reading)
     asked = reading.told.sensor
     readable = {name: topic for name, topic in topics.items() if topic.readable}
     fit = {n: t for n, t in readable.items() if asked.lower() in n.lower()}
@@ -55,10 +54,14 @@ def read(reading: Reading) -> Iterator[Frame]:
         raise DataError(where, f"no topic that is read; its topics: {listed}")
     ((name, topic),) = fit.items()
     reading.sensors[name] = None
-    damage = [Damage(k, name, f"a message is damaged: {what}") for k, what in topic.damage]
+    if topic.is_empty:
+        raise DataError(where, f"no message of topic {name} can be read: {topic.damage[0][1]}")
     entries = topic.entries(where)
     why = f"topic {name} of {topic.kind}"
-    yield from frames_of(reading, entries._replace(why=f"{why}, {entries.why}"), [*damage, *end])
+    damage = [
+        Damage(before, name, f"a message is damaged: {what}") for before, what in topic.damaged()
+    ]
+    yield from frames_of(reading, entries._replace(why=f"{why}, {entries.why}"), damage)
 
 
 class _Topic:
@@ -68,58 +71,81 @@ class _Topic:
         self.kind = f"{schema or 'no schema'}, {encoding}"
         self._decode = json.loads if encoding == "json" else decoder_of(encoding, schema)
         self._json = encoding == "json"
-        self.times_s: list[float] = []
-        self.values: list[Any] = []
+        self._messages: list[tuple[int, Any, bool]] = []
+        """Time, what it holds, and whether messages before it are lost."""
         self.damage: list[tuple[int, str]] = []
+        """Time and trouble of each message that cannot be read."""
+        self.gap = False
+        """Whether messages before the next one are lost."""
 
     @property
     def readable(self) -> bool:
         return self._decode is not None
 
-    def add(self, data: bytes, time_s: float) -> None:
+    @property
+    def is_empty(self) -> bool:
+        return not self._messages
+
+    def damaged(self) -> Iterator[tuple[int, str]]:
+        """Yield how many messages that can be read come before a damaged one, and its trouble."""
+        times = sorted(time_ns for time_ns, _, _ in self._messages)
+        for time_ns, what in sorted(self.damage):
+            yield bisect_left(times, time_ns), what
+
+    def add(self, data: bytes, time_ns: int) -> None:
         if self._decode is None:
             return
         try:
             value = self._decode(data)
-        except ValueError as error:
-            self.damage.append((len(self.values), str(error)))
+        except (ValueError, RecursionError) as error:
+            self.damage.append((time_ns, str(error)))
             return
-        self.times_s.append(time_s)
-        self.values.append(value)
+        self._messages.append((time_ns, value, self.gap))
+        self.gap = False
 
     def entries(self, where: str) -> Entries:
         """Return the frames; those of JSON have times of their own, if they say so."""
+        messages = sorted(self._messages, key=lambda message: message[0])
+        times = [time_ns * 1e-9 for time_ns, _, _ in messages]
+        values = [value for _, value, _ in messages]
+        gaps = frozenset(k for k, (_, _, gap) in enumerate(messages) if gap)
         if not self._json:
-            return Entries(self.values, self.times_s, "time_s", Described(), "an array a message")
-        found = entries_of(where, self.values)
-        return found._replace(times=found.times or self.times_s, time_name=found.time_name or
-                              "time_s")  # fmt: skip
+            return Entries(values, times, "time_s", Described(), "an array a message", gaps)
+        found = entries_of(where, values)
+        return found._replace(
+            times=found.times or times,
+            time_name=found.time_name or "time_s",
+            gaps=gaps if len(found.values) == len(values) else frozenset(),
+        )
 
 
-def _topics(reading: Reading) -> tuple[dict[str, _Topic], list[Damage]]:
-    """Return the topics by their names, and what the end of the file is, if it cannot be read."""
+def _topics(reading: Reading) -> dict[str, _Topic]:
     where = str(reading.path)
+    topics: dict[str, _Topic] = {}
+    lost: list[Lost] = []
     try:
-        from mcap.reader import make_reader
+        check_chunks(reading.path)
+        with reading.path.open("rb") as file:
+            for found in messages_of(file):
+                if isinstance(found, Message):
+                    topic = topics.setdefault(found.topic, _Topic(found.encoding, found.schema))
+                    topic.add(found.data, found.time_ns)
+                    continue
+                lost.append(found)
+                for topic in topics.values() if found.messages else ():
+                    topic.gap = True
     except ImportError:
         raise DataError(
             where, "is MCAP, which needs the 'mcap' extra: pip install 'tactile-graph[mcap]'"
         ) from None
-    check_chunks(reading.path)
-    topics: dict[str, _Topic] = {}
-    try:
-        with reading.path.open("rb") as file:
-            for schema, channel, message in make_reader(file).iter_messages():
-                name = schema.name if schema is not None else ""
-                topic = topics.setdefault(channel.topic, _Topic(channel.message_encoding, name))
-                topic.add(message.data, message.log_time * 1e-9)
-    except Exception as error:  # the library has a dozen kinds of errors over damaged files
-        if not any(topic.values for topic in topics.values()):
-            told = str(error)[:120] or type(error).__name__
-            raise DataError(where, f"the MCAP file cannot be read: {told}") from error
-        what = f"cannot be read: {str(error)[:80]}"
-        return topics, [Damage(sys.maxsize, "its end", what, 0)]
-    return topics, []
+    if lost and not topics:
+        raise DataError(where, f"it holds no message that can be read: {lost[0].what}")
+    for one in lost:
+        if one.messages:
+            reading.report.count("damaged records skipped")
+        told = "; what stands before is read" if one.messages and one.at_end else ""
+        reading.report.trouble(reading.at(one.place), one.what + told)
+    return topics
 
 
 FORMAT = RecordingFormat("MCAP", recognises, read)

@@ -39,13 +39,17 @@ Cells = NDArray[np.float64]
 
 
 class Entries(NamedTuple):
-    """Frames as the file holds them, what it says of them, and the name of their times."""
+    """Frames as the file holds them, what it says of them, and the name of their times.
+
+    ``gaps`` are the numbers of those before which some are lost.
+    """
 
     values: list[Any]
     times: list[Any] | None
     time_name: str
     said: Described
     why: str
+    gaps: frozenset[int] = frozenset()
 
 
 class Damage(NamedTuple):
@@ -144,6 +148,7 @@ def frames_of(reading: Reading, entries: Entries, damage: Sequence[Damage] = ())
             quantity=entries.said.quantity,
             factor=entries.said.factor,
             time_s=_time(entries, k, factor),
+            gap=k in entries.gaps,
         )
     for _, place, what, n_frames in reversed(left):
         reading.damaged(place, what, n_frames=n_frames)

@@ -1,0 +1,137 @@
+"""Groups of named arrays on the disk (HDF5, Zarr): the stack in them, and what lies beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tactile_graph.errors import DataError
+from tactile_graph_sources.readers.arrays.datasets import (
+    Held,
+    Unread,
+    bare,
+    chosen,
+    is_stack,
+    numbered,
+    seconds,
+    time_among,
+)
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.words.names import named
+from tactile_graph_sources.readers.words.preamble import described
+
+_NOT_READ = {
+    "c": ("complex", "save it as real numbers, such as abs(array)"),
+    "O": ("objects or rows of unlike lengths",
+          "save frames of one shape: numpy.stack([numpy.reshape(row, (ROWS, COLUMNS)) for row in "
+          "array])"),
+    "S": ("text", "save it as numbers: array.astype(float)"),
+    "U": ("text", "save it as numbers: array.astype(float)"),
+    "T": ("text", "save it as numbers: array.astype(float)"),
+}  # fmt: skip
+
+
+class Group(NamedTuple):
+    """What a file or store holds.
+
+    Parameters
+    ----------
+    word : str
+        What messages call an array: ``dataset``, ``array``.
+    arrays : mapping
+        Name -> array of h5py or Zarr: of numbers, of dates, or with fields.
+    unread : mapping
+        Name -> what is there and why it is not read.
+    root : File, Group or None
+        Whose attributes hold for all of it.
+    check : callable
+        Refuses arrays, by name, that are too large to be read.
+    load : callable
+        Returns the values of the stack, from its array.
+    """
+
+    word: str
+    arrays: Mapping[str, Any]
+    unread: Mapping[str, Unread]
+    root: Any
+    check: Callable[[Mapping[str, Any]], None]
+    load: Callable[[Any], Any]
+
+
+def _attributes_of(item: Any) -> dict[str, Any]:
+    """Return the attributes of a file, a group or an array, as far as they can be read."""
+    found: dict[str, Any] = {}
+    for key in () if item is None else item.attrs:
+        try:
+            found[key] = item.attrs[key]
+        except Exception:  # of a type that the library does not know
+            continue
+    return found
+
+
+def _with_unit(name: str, unit: object) -> str:
+    """Return the name of times with the unit that an attribute says: ``milliseconds since …``."""
+    text = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit or "")
+    told = f"{bare(name)} ({text.partition(' since ')[0].strip()})"
+    return told if named((told, "")).time_factor is not None else name
+
+
+def unread(dtype: np.dtype[Any], shape: tuple[int, ...]) -> Unread | None:
+    """Return why an array of such a type is not read; None where it may be."""
+    if dtype.names == ("real", "imag"):  # as MATLAB writes it
+        dtype = np.dtype(complex)
+    if dtype.names or dtype.kind in "buifMm":
+        return None
+    what, remedy = _NOT_READ.get(dtype.kind, (f"of type {dtype}", "save it as numbers"))
+    return Unread(what, remedy, shape)
+
+
+def held_in(reading: Reading, group: Group) -> Held:
+    """Return the only stack, those that are numbered, or the one that ``sensor`` names.
+
+    Raises
+    ------
+    DataError
+        If no stack or several could be meant, or it is too large.
+    """
+    where = str(reading.path)
+    numbers = {n: a for n, a in group.arrays.items() if a.dtype.kind in "buif"}
+    dates = {n: a for n, a in group.arrays.items() if a.dtype.kind in "Mm"}
+    others = {**group.unread, **{n: Unread("dates", "", a.shape) for n, a in dates.items()}}
+    shapes = {n: tuple(a.shape) for n, a in numbers.items()}
+    _refuse_fields(where, shapes, {n: a.dtype.names for n, a in group.arrays.items()}, group.word)
+    frames = [] if reading.told.sensor else numbered(shapes)
+    name = frames[0] if frames else chosen(reading, shapes, group.word, others)
+    timed = {n: a for n, a in {**numbers, **dates}.items() if a.ndim == 1 or 1 in a.shape}
+    time = time_among(n for n in timed if n not in {*frames, name})
+    read = {*(frames or [name]), time}
+    group.check({n: a for n, a in {**numbers, **timed}.items() if n in read})
+    values = np.stack([numbers[n][()] for n in frames]) if frames else None
+    values = group.load(numbers[name]) if values is None else values
+    times = None
+    if time:
+        values_of, unit = timed[time][()].ravel(), _attributes_of(timed[time]).get("units")
+        times, time = seconds(values_of, _with_unit(time, unit))
+    attributes = {**_attributes_of(group.root), **_attributes_of(numbers[name])}
+    attributes |= {bare(n): np.asarray(a[()]).item() for n, a in numbers.items() if a.size == 1}
+    said = described(f"{k}: {v}" for k, v in attributes.items() if np.ndim(v) == 0)
+    what = f"{group.word} {name!r}"
+    if frames:
+        what = f"{group.word}s {frames[0]!r} to {frames[-1]!r}"
+    return Held(values, what, said, times, time, bool(frames))
+
+
+def _refuse_fields(
+    where: str, shapes: Mapping[str, tuple[int, ...]], fields: Mapping[str, Any], word: str
+) -> None:
+    """Refuse a file whose only matrices may be fields of an array."""
+    name = next((n for n, names in fields.items() if names), "")
+    if name and not any(map(is_stack, shapes.values())):
+        raise DataError(
+            where,
+            f"{word} {name!r} has fields ({', '.join(fields[name])}); save the one with the cells "
+            f"as {'an' if word[0] in 'aeiou' else 'a'} {word} of its own, in Python: "
+            f"file['frames'] = file[{name!r}][field]",
+        )

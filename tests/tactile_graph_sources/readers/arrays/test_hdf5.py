@@ -1,0 +1,149 @@
+"""HDF5 files: what lies beside the stack does no harm, and what is not read is named."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers_dialects import OBLONG
+from helpers_recordings import frames_of
+from tactile_graph.errors import DataError
+
+h5py = pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
+Fill = Callable[[Any], object]
+
+
+def made(path: Path, *fills: Fill) -> Path:
+    with h5py.File(path, "w") as file:
+        for fill in fills:
+            fill(file)
+    return path
+
+
+def with_stack(file: Any) -> None:
+    file["p"] = OBLONG
+
+
+def empty(file: Any) -> None:
+    file["note"] = h5py.Empty("f4")
+
+
+def ragged(file: Any) -> None:
+    rows = file.create_dataset("rows", (12,), h5py.vlen_dtype(np.float32))
+    for k in range(12):
+        rows[k] = np.arange(k + 1)
+
+
+def text(file: Any) -> None:
+    file["words"] = OBLONG.astype(str).astype(object)
+
+
+def complex_(file: Any) -> None:
+    file["z"] = OBLONG + 1j
+
+
+def matlab_complex(file: Any) -> None:
+    file["z"] = np.zeros((12, 6, 10), [("real", "f8"), ("imag", "f8")])
+
+
+def soft(file: Any) -> None:
+    file["gone"] = h5py.SoftLink("/nowhere/p")
+
+
+def external(file: Any) -> None:
+    file["elsewhere"] = h5py.ExternalLink("other.h5", "/p")
+
+
+def dates(file: Any) -> None:
+    days = np.arange("2024-01-01", "2024-01-13", dtype="M8[D]").astype("M8[s]")
+    file["days"] = days.astype(h5py.opaque_dtype(days.dtype))
+
+
+def fields(file: Any) -> None:
+    file["records"] = np.zeros(12, [("t", "f8"), ("cells", "f8", (6, 10))])
+
+
+def chars(file: Any) -> None:
+    file["names"] = np.full((3, 5), 65, np.uint16)
+    file["names"].attrs["MATLAB_class"] = np.bytes_("char")
+
+
+OTHERS = [
+    (empty, r"note \(empty\)$"),
+    (ragged, r"rows \(\(12,\), objects or rows of unlike lengths\); of 'rows': save frames of one"),
+    (text, r"words \(\(12, 6, 10\), text\); of 'words': save it as numbers"),
+    (complex_, r"z \(\(12, 6, 10\), complex\); of 'z': save it as real numbers"),
+    (matlab_complex, r"z \(\(12, 6, 10\), complex\); of 'z': save it as real numbers"),
+    (soft, r"gone \(a link to '/nowhere/p', where there is nothing to read\)$"),
+    (external, r"elsewhere \(a link to '/p' in the file 'other.h5', .* give that file"),
+    (dates, r"days \(\(12,\), dates\)$"),
+    (chars, r"names \(\(3, 5\), text\)"),
+]
+
+
+@pytest.mark.parametrize(("fill", "told"), OTHERS, ids=lambda v: getattr(v, "__name__", ""))
+def test_what_is_not_read_is_named_and_does_no_harm_beside_a_stack(
+    tmp_path: Path, fill: Fill, told: str
+) -> None:
+    made(tmp_path / "other.h5", with_stack)
+    frames, _ = frames_of(made(tmp_path / "a.h5", with_stack, fill))
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+    with pytest.raises(
+        DataError, match=f"no matrix or stack of matrices in it; its datasets: {told}"
+    ):
+        frames_of(made(tmp_path / "b.h5", fill))
+
+
+def test_a_dataset_with_fields_does_no_harm_beside_a_stack(tmp_path: Path) -> None:
+    frames, _ = frames_of(made(tmp_path / "a.h5", with_stack, fields))
+    assert len(frames) == 12
+    with pytest.raises(DataError, match=r"dataset 'records' has fields \(t, cells\); save the one"):
+        frames_of(made(tmp_path / "b.h5", fields))
+
+
+def test_a_dataset_that_is_not_read_and_asked_for_says_why(tmp_path: Path) -> None:
+    path = made(tmp_path / "a.h5", with_stack, complex_, empty)
+    with pytest.raises(
+        DataError, match=r"dataset 'z' is not read: \(12, 6, 10\), complex; save it"
+    ):
+        frames_of(path, sensor="z")
+    with pytest.raises(DataError, match="dataset 'note' is not read: empty"):
+        frames_of(path, sensor="note")
+
+
+def test_dates_beside_the_stack_are_its_times(tmp_path: Path) -> None:
+    def timed(file: Any) -> None:
+        times = np.datetime64("2024-01-01T00:00:00", "ms") + np.arange(12) * 20
+        file["time"] = times.astype(h5py.opaque_dtype(times.dtype))
+
+    frames, _ = frames_of(made(tmp_path / "a.h5", with_stack, timed))
+    assert frames[3].time_s == pytest.approx(0.06)
+
+
+def test_a_link_within_the_file_is_no_second_stack(tmp_path: Path) -> None:
+    def linked(file: Any) -> None:
+        file["soft"] = h5py.SoftLink("/p")
+        file["hard"] = file["p"]
+
+    assert len(frames_of(made(tmp_path / "a.h5", with_stack, linked))[0]) == 12
+
+
+def test_a_stack_of_one_frame_is_read_and_one_of_none_is_named(tmp_path: Path) -> None:
+    frames, _ = frames_of(made(tmp_path / "a.h5", lambda f: f.update({"p": OBLONG[:1]})))
+    np.testing.assert_array_equal(frames[0].image.values, OBLONG[0])
+    with pytest.raises(DataError, match=r"no matrix .*its datasets: p \(0, 6, 10\)"):
+        frames_of(made(tmp_path / "b.h5", lambda f: f.update({"p": OBLONG[:0]})))
+
+
+def test_far_too_many_values_are_refused_with_a_way_out(tmp_path: Path) -> None:
+    def huge(file: Any) -> None:
+        file.create_dataset("p", (2**40, 2**15, 2**15), "f4", chunks=(1, 64, 64))
+
+    with pytest.raises(
+        DataError, match=r"holds 1,18\d,[\d,]+ values; allowed are 500,000,000: save"
+    ):
+        frames_of(made(tmp_path / "a.h5", huge))
