@@ -186,12 +186,30 @@ def broken_plugin() -> types.ModuleType:
     raise ImportError("No module named 'antigravity'")
 
 
+class _Installed(dict[str, str]):
+    """Something that has the installed plugins looked for anew whenever it changes."""
+
+    def __setitem__(self, name: str, value: str) -> None:
+        super().__setitem__(name, value)
+        self._look_anew()
+
+    def __delitem__(self, name: str) -> None:
+        super().__delitem__(name)
+        self._look_anew()
+
+    def _look_anew(self) -> None:
+        from tactile_graph.plugins import registry
+
+        registry.installed.cache_clear()
+
+
 def install(
     monkeypatch: Any, folder: Path, *others: tuple[str, str, str, Any], **more: Any
 ) -> None:
     """Make the hand-made plugin the only one beside the core, with others after it."""
     from tactile_graph.plugins import registry
 
+    monkeypatch.setitem(_Installed(), "plugins", "hand-made")  # first, so undone last
     rows = [
         (registry.CORE, "tactile-graph", "", registry.core),
         ("hand", "hand-made", "1.2", plugin(folder, **more)),
