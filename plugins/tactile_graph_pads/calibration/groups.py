@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
-from tactile_graph.wires import Frame
+from tactile_graph.wires import Frame, Image
 from tactile_graph_pads.calibration.points import Observation
 from tactile_graph_pads.pad import Pad
 
@@ -26,6 +26,52 @@ class _Reading(NamedTuple):
     place: tuple[int, int, str]
     values: Array
     source: str
+
+
+@dataclass(frozen=True, eq=False)
+class Empty:
+    """What the empty pad reads, as recorded.
+
+    Parameters
+    ----------
+    image : Image
+        The median of each element; none is missing.
+    source : str
+        The recording, for errors.
+    """
+
+    image: Image
+    source: str
+
+
+def empty_of(frames: Sequence[Frame], source: str) -> Empty:
+    """Return the median of each element over the frames in which it was read.
+
+    Raises
+    ------
+    DataError
+        If there is no frame, or an element was read in none.
+    """
+    if not frames:
+        raise DataError(source, "holds no frame")
+    first = frames[0].image
+    read = np.stack([np.asarray(f.image.values, dtype=np.float64) for f in frames])
+    for values, frame in zip(read, frames, strict=True):
+        if frame.image.valid is not None:
+            values[~frame.image.valid] = np.nan
+    missing = np.isnan(read).all(axis=0)
+    if missing.any():
+        row, column = np.argwhere(missing)[0].tolist()
+        n = int(missing.sum())
+        which = "1 element is" if n == 1 else f"{n} elements are"
+        raise DataError(
+            source,
+            f"{which} missing in all {len(frames)} frames of the empty pad, first row {row}, "
+            f"column {column}: what is to be taken off there is not known; record the empty pad "
+            "again with every element read",
+        )
+    middle = np.nanmedian(read, axis=0)
+    return Empty(Image(middle, first.pitch_cm, first.origin_cm, first.quantity), source)
 
 
 @dataclass(frozen=True)
@@ -45,8 +91,8 @@ class GroupReader:
     full_scale : float, optional
         The reading at and above which an element is saturated, as recorded; a pad's converter
         says it.
-    empty : ndarray, optional
-        What the empty pad reads, as recorded.
+    empty : Empty, optional
+        What the empty pad reads.
     """
 
     group: tuple[int, int] | None = (2, 2)
@@ -54,7 +100,7 @@ class GroupReader:
     pad: Pad | None = None
     decouple: bool = False
     full_scale: float | None = None
-    empty: Array | None = None
+    empty: Empty | None = None
 
     def observations(
         self, frames: Iterable[Frame], load_g: float | None, source: str
@@ -120,16 +166,17 @@ class GroupReader:
 
     def _converted(self, recorded: Array, quantity: str, where: str) -> Array:
         """Return what the curve is to read: volts where a pad is known, else as recorded."""
-        if self.empty is not None and self.empty.shape != recorded.shape:
+        empty = None if self.empty is None else self.empty.image.values
+        if empty is not None and empty.shape != recorded.shape:
             raise DataError(
-                where, f"has {recorded.shape} elements, the empty pad had {self.empty.shape}"
+                where, f"has {recorded.shape} elements, the empty pad had {empty.shape}"
             )
         if self.pad is None or quantity not in ("counts", "volt"):
             if self.decouple:
                 raise DataError(where, f"only counts and volts can be decoupled, got {quantity}")
-            return recorded if self.empty is None else recorded - self.empty
+            return recorded if empty is None else recorded - empty
         read = self._to_read(recorded, quantity, where)
-        return read if self.empty is None else read - self._to_read(self.empty, quantity, where)
+        return read if empty is None else read - self._to_read(empty, quantity, where)
 
     def _to_read(self, recorded: Array, quantity: str, where: str) -> Array:
         assert self.pad is not None

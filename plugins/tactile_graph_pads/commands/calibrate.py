@@ -156,25 +156,16 @@ def _provenance(asked: _Options, observed: _Observed) -> Provenance:
 
 def _reader(asked: _Options) -> GroupReader:
     from tactile_graph.errors import UsageError
-    from tactile_graph_pads.calibration.groups import GroupReader
+    from tactile_graph_pads.calibration.groups import GroupReader, empty_of
     from tactile_graph_pads.pad import load_pad
 
     if asked.decouple and asked.pad_name is None:
         raise UsageError("--decouple needs --pad: whose circuit is it?")
     pad = None if asked.pad_name is None else load_pad(asked.pad_name)
-    empty = _median(asked.empty)
+    empty = None if asked.empty is None else empty_of(_frames(asked.empty)[0], str(asked.empty))
     return GroupReader(
         asked.group_shape, asked.at or None, pad, asked.decouple, asked.full_scale, empty
     )
-
-
-def _median(empty: Path | None) -> Any:
-    if empty is None:
-        return None
-    import numpy as np
-
-    frames, _ = _frames(empty)
-    return np.median([frame.image.values for frame in frames], axis=0)
 
 
 def _frames(path: Path) -> tuple[list[Any], Origin]:
