@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame, Image
 from tactile_graph_pads.calibration.points import Observation
 from tactile_graph_pads.pad import Pad
+from tactile_graph_pads.same_pad import check_same_pad
 
 Array = NDArray[np.float64]
 LEAST_SHARE = 0.5
@@ -141,7 +143,13 @@ class GroupReader:
             raise DataError(where, f"{int((~image.valid).sum())} elements are missing")
         recorded = np.asarray(image.values, dtype=np.float64)
         quantity = self.recorded_as(image.quantity)
-        values = self._converted(recorded, quantity, where)
+        values = self._as_read(recorded, quantity, where)
+        if self.empty is not None:
+            rest = self.empty
+            check_same_pad(
+                rest.image, image, rest.source, where, read_as=self.read_as, pitch_known=False
+            )
+            values = values - self._empty_as_read
         corner = self._corner(values, where)
         rows, columns = self.group or values.shape
         block = (slice(corner[0], corner[0] + rows), slice(corner[1], corner[1] + columns))
@@ -164,19 +172,20 @@ class GroupReader:
             return recorded
         return "siemens" if self.decouple else "volt"
 
-    def _converted(self, recorded: Array, quantity: str, where: str) -> Array:
+    @cached_property
+    def _empty_as_read(self) -> Array:
+        assert self.empty is not None
+        values = np.asarray(self.empty.image.values, dtype=np.float64)
+        quantity = self.recorded_as(self.empty.image.quantity)
+        return self._as_read(values, quantity, self.empty.source)
+
+    def _as_read(self, recorded: Array, quantity: str, where: str) -> Array:
         """Return what the curve is to read: volts where a pad is known, else as recorded."""
-        empty = None if self.empty is None else self.empty.image.values
-        if empty is not None and empty.shape != recorded.shape:
-            raise DataError(
-                where, f"has {recorded.shape} elements, the empty pad had {empty.shape}"
-            )
         if self.pad is None or quantity not in ("counts", "volt"):
             if self.decouple:
                 raise DataError(where, f"only counts and volts can be decoupled, got {quantity}")
-            return recorded if empty is None else recorded - empty
-        read = self._to_read(recorded, quantity, where)
-        return read if empty is None else read - self._to_read(empty, quantity, where)
+            return recorded
+        return self._to_read(recorded, quantity, where)
 
     def _to_read(self, recorded: Array, quantity: str, where: str) -> Array:
         assert self.pad is not None

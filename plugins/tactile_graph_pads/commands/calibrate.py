@@ -14,6 +14,7 @@ from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
+    from tactile_graph.wires import Frame
     from tactile_graph_pads.calibration.calibration import Calibration, Origin, Provenance
     from tactile_graph_pads.calibration.groups import GroupReader
     from tactile_graph_pads.calibration.lists import Loaded
@@ -82,7 +83,8 @@ def calibrate(recordings: tuple[str, ...], **options: Any) -> None:
     given = [*map(parse_loaded, recordings), *(read_loads(asked.loads) if asked.loads else ())]
     if not given:
         raise UsageError("nothing to calibrate from: give recordings as FILE=GRAMS, or --loads")
-    observed = _observe(given, _reader(asked))
+    empty = None if asked.empty is None else _recording(asked.empty)
+    observed = _observe(given, _reader(asked, empty), empty)
     points, fit, seen = points_of(observed.seen), asked.fit, observed.seen
     made = replace(
         calibrated(points, fit, observed.quantity, asked.order, seen),
@@ -126,6 +128,15 @@ class _Options:
         return None if isinstance(self.group, str) else self.group
 
 
+class _Recording(NamedTuple):
+    """A recording's frames, where they come from, and whether it says its pitch."""
+
+    path: Path
+    frames: list[Frame]
+    origin: Origin
+    pitch_known: bool
+
+
 class _Observed(NamedTuple):
     """What the recordings hold: observations, where from, of what quantity and shape."""
 
@@ -154,7 +165,7 @@ def _provenance(asked: _Options, observed: _Observed) -> Provenance:
 # -- reading it ------------------------------------------------------------------------------
 
 
-def _reader(asked: _Options) -> GroupReader:
+def _reader(asked: _Options, empty: _Recording | None) -> GroupReader:
     from tactile_graph.errors import UsageError
     from tactile_graph_pads.calibration.groups import GroupReader, empty_of
     from tactile_graph_pads.pad import load_pad
@@ -162,15 +173,15 @@ def _reader(asked: _Options) -> GroupReader:
     if asked.decouple and asked.pad_name is None:
         raise UsageError("--decouple needs --pad: whose circuit is it?")
     pad = None if asked.pad_name is None else load_pad(asked.pad_name)
-    empty = None if asked.empty is None else empty_of(_frames(asked.empty)[0], str(asked.empty))
+    rest = None if empty is None else empty_of(empty.frames, str(empty.path))
     return GroupReader(
-        asked.group_shape, asked.at or None, pad, asked.decouple, asked.full_scale, empty
+        asked.group_shape, asked.at or None, pad, asked.decouple, asked.full_scale, rest
     )
 
 
-def _frames(path: Path) -> tuple[list[Any], Origin]:
-    """Return the frames of a recording, read by whichever plugin offers that source."""
-    from tactile_graph.errors import UsageError
+def _recording(path: Path) -> _Recording:
+    """Return a recording, read by whichever plugin offers that source."""
+    from tactile_graph.errors import DataError, UsageError
     from tactile_graph.plugins.registry import installed
     from tactile_graph.steps.injected import Report
     from tactile_graph_pads.calibration.calibration import Origin
@@ -179,36 +190,52 @@ def _frames(path: Path) -> tuple[list[Any], Origin]:
     if not steps.has("steps", SOURCE):
         raise UsageError(f"recordings need the step {SOURCE!r}: {steps.unknown('steps', SOURCE)}")
     frames = list(steps.load("steps", SOURCE)(path=path, report=report))
+    if not frames:
+        raise DataError(str(path), "holds no frame")
     digest = next(iter(report.digests.values()), "")
-    return frames, Origin(path.name, digest, len(frames))
+    pitch_known = not any("pitch is assumed" in what for what in report.counts)
+    return _Recording(path, frames, Origin(path.name, digest, len(frames)), pitch_known)
 
 
-def _observe(given: Sequence[Loaded], reader: GroupReader) -> _Observed:
+def _check_same(first: _Recording, other: _Recording, reader: GroupReader) -> None:
+    """Refuse a recording of another pad, or one that the curve would read in another unit."""
+    from tactile_graph_pads.same_pad import check_same_pad
+
+    check_same_pad(
+        first.frames[0].image,
+        other.frames[0].image,
+        str(first.path),
+        str(other.path),
+        read_as=reader.read_as,
+        pitch_known=first.pitch_known and other.pitch_known,
+    )
+
+
+def _observe(given: Sequence[Loaded], reader: GroupReader, empty: _Recording | None) -> _Observed:
     from tactile_graph.errors import DataError
 
     seen: list[Observation] = []
     origins: list[Origin] = []
-    quantities: dict[str, str] = {}
-    assumed = False
+    first, assumed = empty, False
     for path, load_g in given:
-        frames, origin = _frames(path)
-        for frame in frames:
-            quantities.setdefault(reader.read_as(frame.image.quantity), str(path))
-            assumed |= reader.recorded_as(frame.image.quantity) != frame.image.quantity
-        seen += reader.observations(frames, load_g, str(path))
-        if origin not in origins:
-            origins.append(origin)
-    if len(quantities) > 1:
-        found = ", ".join(f"{q} ({p})" for q, p in quantities.items())
-        raise DataError("calibration", f"recordings of different quantities: {found}")
+        recording = _recording(path)
+        first = recording if first is None else first
+        _check_same(first, recording, reader)
+        recorded = recording.frames[0].image.quantity
+        assumed |= reader.recorded_as(recorded) != recorded
+        seen += reader.observations(recording.frames, load_g, str(path))
+        if recording.origin not in origins:
+            origins.append(recording.origin)
+    assert first is not None
     if not seen:
         raise DataError("calibration", "too few loads: every frame is of the empty pad")
-    quantity = next(iter(quantities))
+    image = first.frames[0].image
+    quantity = reader.read_as(image.quantity)
     if quantity not in ("volt", "siemens", "counts", "raw"):
         raise DataError(
             "calibration", f"only readings can be calibrated, these are {quantity} already"
         )
-    return _Observed(seen, origins, quantity, frames[0].image.shape, assumed)
+    return _Observed(seen, origins, quantity, image.shape, assumed)
 
 
 def _made_by() -> str:

@@ -159,8 +159,19 @@ def test_groups_must_lie_on_the_pad() -> None:
     with pytest.raises(DataError, match=r"a group at \(15, 3\) reaches over the edge"):
         refused(GroupReader(at=(15, 3)), frame(PAD, 100.0))
     empty = empty_of([Frame(Image(np.zeros((3, 3))))], "e")
-    with pytest.raises(DataError, match=r"has \(16, 16\) elements, the empty pad had \(3, 3\)"):
+    with pytest.raises(DataError, match=r"0: has 16 x 16 elements, but e has 3 x 3: recordings"):
         refused(GroupReader(empty=empty), frame(PAD, 100.0))
+
+
+def test_an_empty_pad_in_another_unit_is_refused_unless_the_pad_turns_one_into_the_other() -> None:
+    pad = counting_pad()
+    rest = empty_of([frame(pad, 0.0)], "e")
+    counts = frame(pad, 400.0, quantity="counts")
+    with pytest.raises(DataError, match="frame 0: holds counts, but e volt: convert one of them"):
+        refused(GroupReader(empty=rest), counts)
+    (seen,) = GroupReader(empty=rest, pad=pad).observations([counts], 400.0, "a")
+    true = PAD.forward(on_four(PAD, 400.0)) - PAD.forward(on_four(PAD, 0.0))
+    np.testing.assert_allclose(seen.readings, true[3:5, 4:6].ravel(), atol=1.3e-3)
 
 
 def test_an_element_missing_in_the_empty_pad_does_not_count_as_0() -> None:

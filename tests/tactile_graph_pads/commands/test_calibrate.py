@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from helpers_calibration import GRAMS, counting_pad, frame, many_files, on_four, one_file
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.plugins import registry
-from tactile_graph.wires import Frame
+from tactile_graph.wires import Frame, Image
 from tactile_graph_pads.calibration.calibration import load_calibration
 from tactile_graph_pads.commands.calibrate import calibrate
 from tactile_graph_pads.pad import load_pad
@@ -172,8 +172,44 @@ def test_different_quantities_do_not_mix(tmp_path: Path) -> None:
     counts = tmp_path / "counts" / "a.npz"
     image = PAD.image(on_four(PAD, 500.0), "counts")
     write_npz(counts, [Frame(image)])
-    refused(DataError, r"recordings of different quantities: volt \(.*\), counts \(",
+    refused(DataError, r"a.npz: holds counts, but .*load-60.npz volt: convert one of them",
             *volts, f"{counts}=500")  # fmt: skip
+    refused(DataError, r"load-60.npz: holds volt, but .*a.npz counts: convert one of them",
+            *volts, "--empty", counts)  # fmt: skip
+
+
+def small(path: Path, shape: tuple[int, int], pitch_cm: float) -> str:
+    values = np.zeros(shape)
+    values[:2, :2] = 1.0
+    write_npz(path, [Frame(Image(values, (pitch_cm, pitch_cm), quantity="volt"))])
+    return f"{path}=500"
+
+
+def test_recordings_of_different_pads_do_not_mix(tmp_path: Path) -> None:
+    a, fewer, wider = (
+        small(tmp_path / name, shape, pitch_cm)
+        for name, shape, pitch_cm in (
+            ("a.npz", (8, 8), 1.0), ("fewer.npz", (8, 6), 1.0), ("wider.npz", (8, 8), 1.3)
+        )
+    )  # fmt: skip
+    refused(DataError, r"fewer.npz: has 8 x 6 elements, but .*a.npz has 8 x 8", a, fewer)
+    refused(DataError, r"wider.npz: has a pitch of 1.3 x 1.3 cm, but .*a.npz of 1 x", a, wider)
+    empty = tmp_path / "wider.npz"
+    refused(DataError, r"a.npz: has a pitch of 1 x 1 cm, but .*wider", a, "--empty", empty)
+
+
+def test_an_assumed_pitch_is_not_held_against_a_known_one(tmp_path: Path) -> None:
+    given = many_files(tmp_path, GRAMS[:3])
+    np.save(tmp_path / "e.npy", np.zeros((3, 16, 16)))
+    refused(DataError, "load-60.npz: holds volt, but .*e.npy raw", *given, "--empty",
+            tmp_path / "e.npy")  # fmt: skip
+    bare = []
+    for grams in GRAMS[:3]:
+        np.save(tmp_path / f"{grams:g}.npy", np.load(tmp_path / f"load-{grams:g}.npz")["values"])
+        bare.append(f"{tmp_path / f'{grams:g}.npy'}={grams}")
+    write_npz(tmp_path / "e.npz", [Frame(PAD.image(np.zeros((16, 16)), "raw"))])
+    said = run(*bare, "--empty", tmp_path / "e.npz", "--fit", "isotonic")
+    assert "fit of 3 loads" in said
 
 
 def test_grams_are_no_readings(tmp_path: Path) -> None:
