@@ -144,12 +144,12 @@ class GroupReader:
         recorded = np.asarray(image.values, dtype=np.float64)
         quantity = self.recorded_as(image.quantity)
         values = self._as_read(recorded, quantity, where)
-        if self.empty is not None:
+        if self.empty is not None and self.offset is not None:
             rest = self.empty
             check_same_pad(
                 rest.image, image, rest.source, where, read_as=self.read_as, pitch_known=False
             )
-            values = values - self._empty_as_read
+            values = values - self.offset
         corner = self._corner(values, where)
         rows, columns = self.group or values.shape
         block = (slice(corner[0], corner[0] + rows), slice(corner[1], corner[1] + columns))
@@ -173,8 +173,10 @@ class GroupReader:
         return "siemens" if self.decouple else "volt"
 
     @cached_property
-    def _empty_as_read(self) -> Array:
-        assert self.empty is not None
+    def offset(self) -> Array | None:
+        """What each element of the empty pad reads, in what the curve is to read."""
+        if self.empty is None:
+            return None
         values = np.asarray(self.empty.image.values, dtype=np.float64)
         quantity = self.recorded_as(self.empty.image.quantity)
         return self._as_read(values, quantity, self.empty.source)

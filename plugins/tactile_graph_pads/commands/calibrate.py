@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from tactile_graph_pads.calibration.points import Observation
 
 SOURCE = "recording"
+MOST_KEPT = 16_384
+"""Elements of which a file can keep an offset; YAML with more values is refused."""
 FITS = ("polynomial", "isotonic", "sums", "power")
 
 
@@ -55,7 +57,8 @@ class _Group(click.ParamType):  # type: ignore[type-arg,unused-ignore]
 @click.option("--decouple", is_flag=True,
               help="Take the pad's crosstalk out first: a curve of conductance.")  # fmt: skip
 @click.option("--empty", type=click.Path(exists=True, path_type=Path),
-              help="A recording of the empty pad; its median is taken off.")  # fmt: skip
+              help="A recording of the empty pad; its median is taken off, and kept in the file "
+              "for the step force to do the same.")  # fmt: skip
 @click.option("--full-scale", type=Finite(), help="Reading from which on an element is saturated.")
 @click.option("--about", default="", help="A line for people, kept in the file.")
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path),
@@ -84,12 +87,16 @@ def calibrate(recordings: tuple[str, ...], **options: Any) -> None:
     if not given:
         raise UsageError("nothing to calibrate from: give recordings as FILE=GRAMS, or --loads")
     empty = None if asked.empty is None else _recording(asked.empty)
-    observed = _observe(given, _reader(asked, empty), empty)
+    reader = _reader(asked, empty)
+    if asked.output is not None and reader.offset is not None:
+        _check_kept(reader.offset.size, str(asked.empty))
+    observed = _observe(given, reader, empty)
     points, fit, seen = points_of(observed.seen), asked.fit, observed.seen
     made = replace(
         calibrated(points, fit, observed.quantity, asked.order, seen),
         about=asked.about,
-        provenance=_provenance(asked, observed),
+        provenance=_provenance(asked, observed, empty),
+        offset=() if reader.offset is None else tuple(map(tuple, reader.offset.tolist())),
     )
     if observed.assumed:
         say(
@@ -148,7 +155,7 @@ class _Observed(NamedTuple):
     """Whether recordings that do not say their quantity were taken for the pad's counts."""
 
 
-def _provenance(asked: _Options, observed: _Observed) -> Provenance:
+def _provenance(asked: _Options, observed: _Observed, empty: _Recording | None) -> Provenance:
     from tactile_graph_pads.calibration.calibration import Provenance
 
     return Provenance(
@@ -159,7 +166,19 @@ def _provenance(asked: _Options, observed: _Observed) -> Provenance:
         decoupled=asked.decouple,
         group=asked.group_shape or observed.shape,
         recordings=tuple(observed.origins),
+        empty=None if empty is None else empty.origin,
     )
+
+
+def _check_kept(n_elements: int, empty: str) -> None:
+    """Refuse an offset that no file could keep: its grams would be wrong without."""
+    from tactile_graph.errors import UsageError
+
+    if n_elements > MOST_KEPT:
+        raise UsageError(
+            f"--empty {empty}: has {n_elements} elements, and a calibration file keeps what the "
+            f"empty pad reads of {MOST_KEPT} at most; leave -o out, or record a part of the pad"
+        )
 
 
 # -- reading it ------------------------------------------------------------------------------

@@ -6,15 +6,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from click.testing import CliRunner
 
 from helpers_calibration import GRAMS, counting_pad, frame, many_files, on_four, one_file
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.plugins import registry
+from tactile_graph.steps import Report
 from tactile_graph.wires import Frame, Image
+from tactile_graph_filters.readings.force import Force
 from tactile_graph_pads.calibration.calibration import load_calibration
 from tactile_graph_pads.commands.calibrate import calibrate
 from tactile_graph_pads.pad import load_pad
+from tactile_graph_sources.recording import recording
 from tactile_graph_sources.writers.write_npz import write_npz
 
 PAD = load_pad("plain")
@@ -91,6 +95,60 @@ def test_an_empty_recording_is_taken_off(tmp_path: Path) -> None:
     assert made.reading == "counts"
     volts = PAD.forward(on_four(PAD, GRAMS[0]))[3, 4]
     assert made.from_reading == pytest.approx(volts / pad.converter.step_v, abs=0.5)
+
+
+def raised(folder: Path, rest: float = 0.3) -> tuple[list[str], Path]:
+    """Recordings of loads on a pad that reads something when empty, and one of it empty."""
+    empty = np.random.default_rng(0).normal(rest, 0.03, (16, 16))
+    given = []
+    for grams in GRAMS:
+        one = frame(PAD, grams)
+        write_npz(
+            folder / f"{grams:g}.npz", [Frame(one.image.with_values(one.image.values + empty))]
+        )
+        given.append(f"{folder / f'{grams:g}.npz'}={grams}")
+    write_npz(folder / "empty.npz", [Frame(PAD.image(empty, "volt"))])
+    return given, folder / "empty.npz"
+
+
+@pytest.mark.parametrize("fit", ["polynomial", "isotonic"])
+def test_the_line_to_paste_gives_the_grams_of_a_pad_whose_empty_readings_were_taken_off(
+    tmp_path: Path, fit: str
+) -> None:
+    given, empty = raised(tmp_path)
+    out = tmp_path / "c.yaml"
+    run(*given, "--empty", empty, "--fit", fit, "-o", out)
+    first, line = out.read_text().splitlines()[:2]
+    assert "above the empty pad's" in first
+    node = yaml.safe_load(line.split("In a pipeline:")[1])
+    assert node == {"force": {"step": "force", "in": "frame", "with": {"calibration": str(out)}}}
+    step = Force(calibration=Path(node["force"]["with"]["calibration"]))
+    for grams in GRAMS:
+        image = next(iter(recording(path=tmp_path / f"{grams:g}.npz", report=Report()))).image
+        assert step(image).filled().sum() == pytest.approx(grams, rel=0.1), grams
+    told = load_calibration(out).provenance
+    assert told.empty is not None
+    assert (told.empty.file, told.empty.frames) == ("empty.npz", 1)
+
+
+@pytest.mark.slow
+def test_the_offset_that_a_file_keeps_is_in_what_the_curve_reads(tmp_path: Path) -> None:
+    pad = counting_pad()
+    given = many_files(tmp_path, quantity="counts", pad=pad)
+    empty = tmp_path / "empty.npz"
+    write_npz(empty, [frame(pad, 0.0, quantity="counts")])
+    run(*given, "--empty", empty, "--pad", "thesis", "--decouple", "--fit", "power",
+        "-o", tmp_path / "c.yaml")  # fmt: skip
+    offset = np.array(load_calibration(tmp_path / "c.yaml").offset)
+    assert offset.shape == (16, 16)
+    np.testing.assert_allclose(offset, PAD.conductance_s(np.zeros((16, 16))), atol=1e-7)
+
+
+def test_a_pad_of_too_many_elements_to_keep_is_refused_before_the_work(tmp_path: Path) -> None:
+    empty = tmp_path / "e.npz"
+    write_npz(empty, [Frame(Image(np.zeros((130, 130)), quantity="volt"))])
+    refused(UsageError, "has 16900 elements, and a calibration file keeps .* of 16384 at most",
+            f"{tmp_path / 'gone.npz'}=3", "--empty", empty, "-o", tmp_path / "c.yaml")  # fmt: skip
 
 
 @pytest.mark.slow
