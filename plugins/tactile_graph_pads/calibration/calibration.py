@@ -68,6 +68,7 @@ class Quality:
     Parameters
     ----------
     rms_g, largest_g : float
+        In grams on an element.
     rms_percent, largest_percent : float
         Of each point's load.
     r_squared : float
@@ -84,7 +85,15 @@ class Quality:
 
 @dataclass(frozen=True)
 class Units:
-    """What the numbers are in, said for people."""
+    """What the numbers are in, said for people.
+
+    Parameters
+    ----------
+    reading : str
+        Of readings and offset.
+    load : str
+        Of loads.
+    """
 
     reading: str = ""
     load: str = "g on each element"
@@ -98,9 +107,11 @@ class Origin:
     Parameters
     ----------
     file : str
+        Its name.
     sha256 : str
         Empty for a store of many files.
     frames : int
+        How many it holds.
     """
 
     file: str
@@ -120,6 +131,7 @@ class Provenance:
     made_at : str
         Date and time.
     command : tuple of str
+        What was typed, word by word.
     pad : str
         Whose converter and circuit were used; empty for none.
     decoupled : bool
@@ -127,6 +139,7 @@ class Provenance:
     group : (int, int)
         Rows and columns of elements that were loaded together and averaged.
     recordings : tuple of Origin
+        Those of loads.
     empty : Origin, optional
         The recording of the empty pad that was taken off.
     """
@@ -153,6 +166,7 @@ class Calibration:
     reading : "volt", "siemens", "counts" or "raw"
         What the curve reads: the quantity of the images it may be applied to.
     fit : Polynomial, Isotonic or PowerLaw
+        Grams on an element for a reading.
     from_reading, up_to : float
         Smallest and largest calibrated reading.
     quality : Quality
