@@ -11,6 +11,8 @@ from tactile_graph.plugins.registry import Registry
 from tactile_graph.record_schema import record_schema
 
 KINDS = {
+    "calibration": "Grams behind readings, as `calibrate` writes them, for `force` "
+    "([what for](../../pad.md#calibrating-a-pad)).",
     "pad": "A pad's physics, for `simulate`, the likelihood ([what for](../../pad.md)).",
     "preset": "How a kit on a serial port is read ([what for](../../devices.md)).",
     "scene": "What lies on a simulated pad: `--source simulate --with scene=my-scene.yaml`.",
@@ -21,7 +23,7 @@ def write_files(registry: Registry, into: Path) -> int:
     """Write a page a kind of file into a folder, and return how many kinds there are."""
     for name in KINDS:
         write(into / "files" / f"{name}.md", page(registry, name))
-    head = "# Every key of pad, preset and scene files"
+    head = "# Every key of pad, preset, scene and calibration files"
     about = "[What such files are for](../../files.md)."
     text = "\n\n".join([head, about, toctree(KINDS)])
     write(into / "files" / "index.md", text)
@@ -33,8 +35,11 @@ def page(registry: Registry, kind: str) -> str:
     parts = [f"# Keys of a {kind} file\n\n{KINDS[kind]}\n"]
     schema = record_schema(file_kind(registry, kind), kind)
     parts += [_section(table) for table in key_tables(schema)]
+    names = registry.names(file_kind(registry, kind).offers)
+    if not names:  # none is offered by name
+        return "\n".join(parts)
     parts.append(f"## Installed\n\nTo start from, `tactile-graph {kind}s NAME > my-{kind}.yaml`.\n")
-    for name in registry.names(f"{kind}s"):
+    for name in names:
         text = registry.path(f"{kind}s", name).read_text("utf-8")
         parts.append(f"### {name}\n\n{fence('yaml', text)}")
     return "\n".join(parts)

@@ -34,3 +34,10 @@ def tactile_graph_commands() -> Mapping[str, str]:
         **{name: f"{__name__}.commands.{name}:{name}" for name in names},
         "learn-reliefs": f"{__name__}.commands.learn_reliefs:learn_reliefs",
     }
+
+
+@hookimpl
+def tactile_graph_checks() -> Mapping[str, str]:
+    """Offer what looks through object databases and their exports."""
+    home = f"{__name__}.database.checking"
+    return {"object database": f"{home}:DATABASE", "object export": f"{home}:EXPORT"}

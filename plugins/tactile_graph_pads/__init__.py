@@ -21,8 +21,11 @@ def tactile_graph_pads() -> Mapping[str, Path]:
 
 @hookimpl
 def tactile_graph_file_kinds() -> Mapping[str, str]:
-    """Offer what a pad file is."""
-    return {"pad": "tactile_graph_pads.pad_kind:PAD"}
+    """Offer what the files of pads and of calibrations are."""
+    return {
+        "calibration": "tactile_graph_pads.calibration.calibration_kind:CALIBRATION",
+        "pad": "tactile_graph_pads.pad_kind:PAD",
+    }
 
 
 @hookimpl

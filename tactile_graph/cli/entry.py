@@ -13,6 +13,7 @@ NEW_OBJECTS = 100_000
 def main() -> None:
     """Run the command line and exit."""
     _open_streams()
+    _stand_in_a_folder()
     gc.set_threshold(NEW_OBJECTS, *gc.get_threshold()[1:])
     try:
         from tactile_graph.cli.early import begin_workers
@@ -48,4 +49,20 @@ def _open_streams() -> None:
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115 -- until the end
     if sys.stdout is None:
         sys.stderr.write("error: standard output is closed (>&-); send it to /dev/null instead\n")
+        sys.exit(2)
+
+
+def _stand_in_a_folder() -> None:
+    """Refuse to begin where the current folder was deleted: nothing is found from there.
+
+    What libraries do there fails in many places, the processes that share work among them, and
+    none says why.
+    """
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        sys.stderr.write(
+            "error: the current folder is gone: it was deleted, or made anew under the same name; "
+            "change into one that is there (cd)\n"
+        )
         sys.exit(2)

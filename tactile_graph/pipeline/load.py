@@ -141,7 +141,7 @@ def _shown(path: Path) -> str:
     """Return the path as short as it can be said from here."""
     try:
         return str(path.relative_to(Path.cwd()))
-    except ValueError:
+    except (ValueError, OSError):  # elsewhere, or here is a folder that was deleted
         return str(path)
 
 

@@ -14,7 +14,8 @@ class FileKind:
     Parameters
     ----------
     offers : str
-        The hook's word for such files: ``"pads"`` of ``tactile_graph_pads``.
+        The hook's word for such files: ``"pads"`` of ``tactile_graph_pads``. Empty where no plugin
+        offers any by name.
     record : type
         What a file holds: a dataclass or pydantic model, each key of it a parameter of its
         docstring.

@@ -1,4 +1,4 @@
-"""The pages of pad, preset and scene files tell every key, and show every file installed."""
+"""The pages of kinds of files tell every key, and show every file installed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 pytestmark = pytest.mark.skipif(not DOCS.is_dir(), reason="the docs are not beside the tests")
 
 
-@pytest.mark.parametrize("kind", ["pad", "preset", "scene"])
+@pytest.mark.parametrize("kind", ["calibration", "pad", "preset", "scene"])
 def test_a_page_tells_every_key_and_shows_what_is_installed(
     kind: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

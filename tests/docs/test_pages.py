@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
 import sys
@@ -312,8 +313,8 @@ def test_the_commands_that_learn_a_pad_and_the_pipeline_on_it_run(
     Path("places.csv").write_text("recording,frame,x_cm,y_cm\nobjects.npz,0,5.1,4.4\n")
     page = DOCS / "how-to" / "learn-a-pad.md"
     learning = [words for words in commands(page) if words[0] == "learn-pad"]
-    assert len(learning) == 4
-    *here, told = learning
+    assert len(learning) == 5
+    *here, told = [words for words in learning if "old-empty.npz" not in words]
     for words in reversed(here):
         done = CliRunner().invoke(cli, words, catch_exceptions=False)
         assert done.exit_code == 0, done.output
@@ -324,3 +325,30 @@ def test_the_commands_that_learn_a_pad_and_the_pipeline_on_it_run(
     result = next(iter(loads(pipeline).stream()))
     (contact,) = result["placed"].contacts
     assert contact.x_std_cm > 0.0
+
+
+@pytest.mark.slow
+def test_the_comparison_on_the_page_of_learned_pads_comes_out_as_it_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shown = commands(DOCS / "how-to" / "learn-a-pad.md")
+    (worn,) = fenced("how-to/learn-a-pad", "python")
+    (learn,) = (words for words in shown if "old-empty.npz" in words)
+    (compare,) = (words for words in shown if words[0] == "compare")
+    recordings = [words for words in shown if words[0] == "convert"]
+    assert len(recordings) == 3
+    for words in recordings:
+        assert CliRunner().invoke(cli, words).exit_code == 0
+    exec(worn, {})
+    for words in (learn, [*compare, "--json", "found.json"]):
+        done = CliRunner().invoke(cli, words, catch_exceptions=False)
+        assert done.exit_code == 0, done.output
+    told = json.loads(Path("found.json").read_text())
+    assert [difference["verdict"] for difference in told["differences"]] == ["better", "better"]
+    shipped, learned = (
+        [score["mean"] for score in told["scores"] if score["variant"] == variant["label"]]
+        for variant in told["variants"]
+    )
+    assert len(learned) == 2
+    assert all(b < 0.5 * a for a, b in zip(shipped, learned, strict=True))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from annotated_types import Ge
@@ -50,19 +50,32 @@ def floored(grams, floor_g):  # type: ignore[no-untyped-def]
     return bad == 0
 
 
-Calibrated = tuple[list[tuple[float, float]] | None, list[float] | None, float | None, str]
-"""Curve, polynomial, largest reading of the polynomial, and the quantity they read."""
+class Calibrated(NamedTuple):
+    """What a calibration file says, as this step's own settings."""
+
+    curve: list[tuple[float, float]] | None
+    polynomial: list[float] | None
+    up_to: float | None
+    reading: str
+    """The quantity of what is read."""
+    offset: Values | None
+    """What each element of the empty pad reads, where that is to be taken off."""
 
 
 def load_calibrated(path: Path) -> Calibrated:
-    """Return what a calibration file says, as this step's own settings."""
+    """Return what a calibration file says."""
     from tactile_graph_pads.calibration.calibration import load_calibration
 
-    calibration = load_calibration(path)
-    settings = calibration.force_settings()
+    found = load_calibration(path)
+    settings = found.force_settings()
     curve = settings.get("curve")
-    points = None if curve is None else [(float(r), float(g)) for r, g in curve]
-    return points, settings.get("polynomial"), settings.get("up_to"), calibration.reading
+    return Calibrated(
+        None if curve is None else [(float(r), float(g)) for r, g in curve],
+        settings.get("polynomial"),
+        settings.get("up_to"),
+        found.reading,
+        np.array(found.offset) if found.offset else None,
+    )
 
 
 def beyond_range(image: Image, value: Image) -> str:
@@ -96,7 +109,10 @@ class Force:
     up_to : float, optional
         Largest reading that the polynomial was fitted to; readings above become invalid.
     calibration : Path, optional
-        Instead: a file that ``tactile-graph calibrate`` has written.
+        Instead: a file that ``tactile-graph calibrate`` has written. Where it was told what the
+        empty pad reads, the file keeps that, and it is taken off here too.
+    tared : bool
+        Whether that was taken off before, by ``tare`` or ``correct_readings``: it is then left.
     floor_g : float, optional
         Loads below this are 0 g. Half the turn-on load of a pad's law if nothing is given: there
         the element's conductance is lost in the converter's noise, and without a floor an empty
@@ -106,7 +122,8 @@ class Force:
     ------
     ValueError
         If more than one of ``pad``, ``curve``, ``polynomial`` and ``calibration`` is given, or
-        ``curve`` does not rise, or ``polynomial`` is empty.
+        ``curve`` does not rise, or ``polynomial`` is empty, or ``tared`` is said without a
+        ``calibration``.
 
     Notes
     -----
@@ -125,16 +142,21 @@ class Force:
         polynomial: list[float] | None = None,
         up_to: float | None = None,
         calibration: Path | None = None,
+        tared: bool = False,
         floor_g: Annotated[float | None, Ge(0)] = None,
     ) -> None:
         kinds = {"pad": pad, "curve": curve, "polynomial": polynomial, "calibration": calibration}
         given = [name for name, setting in kinds.items() if setting is not None]
         if len(given) > 1:
             raise ValueError(f"at most one of {', '.join(kinds)}, got {' and '.join(given)}")
+        if tared and calibration is None:
+            raise ValueError("tared belongs to calibration, which is not given")
         self._quantity = ""
+        self._offset: Values | None = None
         if calibration is not None:
             found = load_calibrated(calibration)
-            curve, polynomial, up_to, self._quantity = found
+            curve, polynomial, up_to, self._quantity, offset = found
+            self._offset = None if tared else offset
         if polynomial is not None and not polynomial:
             raise ValueError("polynomial: needs at least one coefficient, got none")
         if up_to is not None and polynomial is None:
@@ -164,7 +186,7 @@ class Force:
         ------
         RuleError
             If a force law is asked to read anything but siemens, or a calibration anything but
-            what it was made of.
+            what it was made of, or of another grid than that of the empty pad it keeps.
         """
         if self._quantity not in ("", image.quantity):
             raise RuleError(f"the calibration reads {self._quantity}, got {image.quantity}")
@@ -173,7 +195,7 @@ class Force:
                 f"a force law reads siemens, got {image.quantity}; decouple the image first,"
                 " or give curve or polynomial"
             )
-        grams = self._grams(np.ascontiguousarray(image.values, np.float64))
+        grams = self._grams(self._above(image))
         valid = image.valid
         if not floored.call(grams, self._floor_g):
             refuse_nan(image)
@@ -182,6 +204,20 @@ class Force:
         if valid is not None:
             grams = np.where(valid, grams, 0.0)
         return Image(grams, image.pitch_cm, image.origin_cm, "gram", valid)
+
+    def _above(self, image: Image) -> Values:
+        """Return the readings less those of the empty pad, where a calibration keeps them."""
+        readings = np.ascontiguousarray(image.values, np.float64)
+        if self._offset is None:
+            return readings
+        if image.shape != self._offset.shape:
+            rows, columns = self._offset.shape
+            raise RuleError(
+                f"the calibration keeps what an empty pad of {rows} x {columns} elements reads, "
+                f"got an image of {image.rows} x {image.columns}: put this step before what "
+                "changes the grid"
+            )
+        return np.asarray(readings - self._offset)
 
     def _grams(self, readings: Values) -> Values:
         """Return the loads; infinite where the reading is beyond what is known."""

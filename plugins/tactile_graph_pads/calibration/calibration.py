@@ -68,6 +68,7 @@ class Quality:
     Parameters
     ----------
     rms_g, largest_g : float
+        In grams on an element.
     rms_percent, largest_percent : float
         Of each point's load.
     r_squared : float
@@ -84,7 +85,15 @@ class Quality:
 
 @dataclass(frozen=True)
 class Units:
-    """What the numbers are in, said for people."""
+    """What the numbers are in, said for people.
+
+    Parameters
+    ----------
+    reading : str
+        Of readings and offset.
+    load : str
+        Of loads.
+    """
 
     reading: str = ""
     load: str = "g on each element"
@@ -98,9 +107,11 @@ class Origin:
     Parameters
     ----------
     file : str
+        Its name.
     sha256 : str
         Empty for a store of many files.
     frames : int
+        How many it holds.
     """
 
     file: str
@@ -120,6 +131,7 @@ class Provenance:
     made_at : str
         Date and time.
     command : tuple of str
+        What was typed, word by word.
     pad : str
         Whose converter and circuit were used; empty for none.
     decoupled : bool
@@ -127,6 +139,9 @@ class Provenance:
     group : (int, int)
         Rows and columns of elements that were loaded together and averaged.
     recordings : tuple of Origin
+        Those of loads.
+    empty : Origin, optional
+        The recording of the empty pad that was taken off.
     """
 
     made_by: str = ""
@@ -136,6 +151,7 @@ class Provenance:
     decoupled: bool = False
     group: tuple[int, int] = (2, 2)
     recordings: tuple[Origin, ...] = ()
+    empty: Origin | None = None
     __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
 
 
@@ -150,6 +166,7 @@ class Calibration:
     reading : "volt", "siemens", "counts" or "raw"
         What the curve reads: the quantity of the images it may be applied to.
     fit : Polynomial, Isotonic or PowerLaw
+        Grams on an element for a reading.
     from_reading, up_to : float
         Smallest and largest calibrated reading.
     quality : Quality
@@ -159,6 +176,9 @@ class Calibration:
         One line for people.
     units : Units
     provenance : Provenance
+    offset : tuple of tuple of float
+        What each element of the empty pad reads, row by row from the top: the curve reads what lies
+        above. Empty where readings are taken as they are.
     """
 
     format: Literal["tactile-graph calibration 1"]
@@ -171,6 +191,7 @@ class Calibration:
     about: str = ""
     units: Units = field(default_factory=Units)
     provenance: Provenance = field(default_factory=Provenance)
+    offset: tuple[tuple[float, ...], ...] = ()
     __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
 
     def __post_init__(self) -> None:
@@ -178,6 +199,10 @@ class Calibration:
             raise ValueError(
                 f"from_reading must be below up_to, got {self.from_reading:g} and {self.up_to:g}"
             )
+        if len({len(row) for row in self.offset}) > 1:
+            raise ValueError("offset: its rows must be of one length")
+        if not np.isfinite([value for row in self.offset for value in row]).all():
+            raise ValueError("offset: every element must be a finite number")
         with np.errstate(all="ignore"):
             grams = self.fit.grams(np.linspace(0.0, self.up_to, 401))
         if not (np.isfinite(grams).all() and (np.diff(grams) >= -1e-9 * abs(grams).max()).all()):
@@ -196,6 +221,7 @@ class Calibration:
         Parameters
         ----------
         readings : ndarray of float64
+            Less the offset, where one is kept.
         """
         readings = np.asarray(readings, dtype=np.float64)
         valid = readings <= self.up_to
@@ -205,7 +231,7 @@ class Calibration:
         return Grams(load, valid)
 
     def force_settings(self) -> dict[str, Any]:
-        """Return the settings that give the step ``force`` this curve.
+        """Return the settings that give the step ``force`` this curve, without the offset.
 
         A power law becomes 64 straight lines of equal ratio, a polynomial and points stay what
         they are.
@@ -249,23 +275,36 @@ def write_calibration(path: str | Path, calibration: Calibration) -> None:
     path : str or Path
     calibration : Calibration
     """
-    write_whole(path, calibration_text(calibration))
+    write_whole(path, calibration_text(calibration, str(path)))
 
 
-def calibration_text(calibration: Calibration) -> str:
-    """Return a calibration as the YAML text of its file, with a node of it ready for use."""
+def calibration_text(calibration: Calibration, path: str = "") -> str:
+    """Return a calibration as the YAML text of its file, with a node of it ready for use.
+
+    Parameters
+    ----------
+    calibration : Calibration
+    path : str
+        Where the file will be: one that keeps an offset is named by its node.
+    """
     from tactile_graph.pipeline.document import in_yaml
 
     data = _plain(asdict(calibration))
     order = ("format", "about", "reading", "units", "from_reading", "up_to", "fit", "quality")
-    data = {k: data[k] for k in (*order, "points", "provenance")}
-    node = in_yaml(
-        _plain(calibration.force_settings()), default_flow_style=True, width=10**9
-    ).strip()
+    data = {k: data[k] for k in (*order, "points", "provenance", "offset")}
+    above = ""
+    if data["offset"]:
+        above = "above the empty pad's, the offset of each element at the end, "
+    else:
+        del data["offset"]
+    if data["provenance"]["empty"] is None:
+        del data["provenance"]["empty"]
+    settings = {"calibration": path} if above else _plain(calibration.force_settings())
+    node = in_yaml(settings, default_flow_style=True, width=10**9).strip()
     name = {"siemens": "decoupled"}.get(calibration.reading, "frame")
     head = (
-        "# Made by tactile-graph calibrate. Readings at or below 0 are 0 g, those above up_to "
-        "are invalid.\n"
+        f"# Made by tactile-graph calibrate. Readings {above}at or below 0 are 0 g, those above "
+        "up_to are invalid.\n"
         f"# In a pipeline:  force: {{step: force, in: {name}, with: {node}}}\n"
     )
     body = in_yaml(data, sort_keys=False, allow_unicode=True, default_flow_style=None,

@@ -74,6 +74,7 @@ class PowerLaw:
     scale_g : float
         Grams at the reading ``unit``.
     exponent : float
+        How much steeper than a straight line.
     unit : float
         Keeps the scale a number that can be read, where readings are microsiemens.
     """

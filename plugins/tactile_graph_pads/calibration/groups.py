@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -11,9 +12,10 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
-from tactile_graph.wires import Frame
+from tactile_graph.wires import Frame, Image
 from tactile_graph_pads.calibration.points import Observation
 from tactile_graph_pads.pad import Pad
+from tactile_graph_pads.same_pad import check_same_pad
 
 Array = NDArray[np.float64]
 LEAST_SHARE = 0.5
@@ -26,6 +28,52 @@ class _Reading(NamedTuple):
     place: tuple[int, int, str]
     values: Array
     source: str
+
+
+@dataclass(frozen=True, eq=False)
+class Empty:
+    """What the empty pad reads, as recorded.
+
+    Parameters
+    ----------
+    image : Image
+        The median of each element; none is missing.
+    source : str
+        The recording, for errors.
+    """
+
+    image: Image
+    source: str
+
+
+def empty_of(frames: Sequence[Frame], source: str) -> Empty:
+    """Return the median of each element over the frames in which it was read.
+
+    Raises
+    ------
+    DataError
+        If there is no frame, or an element was read in none.
+    """
+    if not frames:
+        raise DataError(source, "holds no frame")
+    first = frames[0].image
+    read = np.stack([np.asarray(f.image.values, dtype=np.float64) for f in frames])
+    for values, frame in zip(read, frames, strict=True):
+        if frame.image.valid is not None:
+            values[~frame.image.valid] = np.nan
+    missing = np.isnan(read).all(axis=0)
+    if missing.any():
+        row, column = np.argwhere(missing)[0].tolist()
+        n = int(missing.sum())
+        which = "1 element is" if n == 1 else f"{n} elements are"
+        raise DataError(
+            source,
+            f"{which} missing in all {len(frames)} frames of the empty pad, first row {row}, "
+            f"column {column}: what is to be taken off there is not known; record the empty pad "
+            "again with every element read",
+        )
+    middle = np.nanmedian(read, axis=0)
+    return Empty(Image(middle, first.pitch_cm, first.origin_cm, first.quantity), source)
 
 
 @dataclass(frozen=True)
@@ -45,8 +93,8 @@ class GroupReader:
     full_scale : float, optional
         The reading at and above which an element is saturated, as recorded; a pad's converter
         says it.
-    empty : ndarray, optional
-        What the empty pad reads, as recorded.
+    empty : Empty, optional
+        What the empty pad reads.
     """
 
     group: tuple[int, int] | None = (2, 2)
@@ -54,7 +102,7 @@ class GroupReader:
     pad: Pad | None = None
     decouple: bool = False
     full_scale: float | None = None
-    empty: Array | None = None
+    empty: Empty | None = None
 
     def observations(
         self, frames: Iterable[Frame], load_g: float | None, source: str
@@ -95,7 +143,13 @@ class GroupReader:
             raise DataError(where, f"{int((~image.valid).sum())} elements are missing")
         recorded = np.asarray(image.values, dtype=np.float64)
         quantity = self.recorded_as(image.quantity)
-        values = self._converted(recorded, quantity, where)
+        values = self._as_read(recorded, quantity, where)
+        if self.empty is not None and self.offset is not None:
+            rest = self.empty
+            check_same_pad(
+                rest.image, image, rest.source, where, read_as=self.read_as, pitch_known=False
+            )
+            values = values - self.offset
         corner = self._corner(values, where)
         rows, columns = self.group or values.shape
         block = (slice(corner[0], corner[0] + rows), slice(corner[1], corner[1] + columns))
@@ -118,18 +172,22 @@ class GroupReader:
             return recorded
         return "siemens" if self.decouple else "volt"
 
-    def _converted(self, recorded: Array, quantity: str, where: str) -> Array:
+    @cached_property
+    def offset(self) -> Array | None:
+        """What each element of the empty pad reads, in what the curve is to read."""
+        if self.empty is None:
+            return None
+        values = np.asarray(self.empty.image.values, dtype=np.float64)
+        quantity = self.recorded_as(self.empty.image.quantity)
+        return self._as_read(values, quantity, self.empty.source)
+
+    def _as_read(self, recorded: Array, quantity: str, where: str) -> Array:
         """Return what the curve is to read: volts where a pad is known, else as recorded."""
-        if self.empty is not None and self.empty.shape != recorded.shape:
-            raise DataError(
-                where, f"has {recorded.shape} elements, the empty pad had {self.empty.shape}"
-            )
         if self.pad is None or quantity not in ("counts", "volt"):
             if self.decouple:
                 raise DataError(where, f"only counts and volts can be decoupled, got {quantity}")
-            return recorded if self.empty is None else recorded - self.empty
-        read = self._to_read(recorded, quantity, where)
-        return read if self.empty is None else read - self._to_read(self.empty, quantity, where)
+            return recorded
+        return self._to_read(recorded, quantity, where)
 
     def _to_read(self, recorded: Array, quantity: str, where: str) -> Array:
         assert self.pad is not None

@@ -14,12 +14,15 @@ from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
+    from tactile_graph.wires import Frame
     from tactile_graph_pads.calibration.calibration import Calibration, Origin, Provenance
     from tactile_graph_pads.calibration.groups import GroupReader
     from tactile_graph_pads.calibration.lists import Loaded
     from tactile_graph_pads.calibration.points import Observation
 
 SOURCE = "recording"
+MOST_KEPT = 16_384
+"""Elements of which a file can keep an offset; YAML with more values is refused."""
 FITS = ("polynomial", "isotonic", "sums", "power")
 
 
@@ -54,7 +57,8 @@ class _Group(click.ParamType):  # type: ignore[type-arg,unused-ignore]
 @click.option("--decouple", is_flag=True,
               help="Take the pad's crosstalk out first: a curve of conductance.")  # fmt: skip
 @click.option("--empty", type=click.Path(exists=True, path_type=Path),
-              help="A recording of the empty pad; its median is taken off.")  # fmt: skip
+              help="A recording of the empty pad; its median is taken off, and kept in the file "
+              "for the step force to do the same.")  # fmt: skip
 @click.option("--full-scale", type=Finite(), help="Reading from which on an element is saturated.")
 @click.option("--about", default="", help="A line for people, kept in the file.")
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path),
@@ -85,12 +89,17 @@ def calibrate(recordings: tuple[str, ...], **options: Any) -> None:
         raise UsageError("nothing to calibrate from: give recordings as FILE=GRAMS, or --loads")
     written = (("-o", asked.output), ("--plot", asked.plot))
     check_targets(written, read=[one.path for one in given])
-    observed = _observe(given, _reader(asked))
+    empty = None if asked.empty is None else _recording(asked.empty)
+    reader = _reader(asked, empty)
+    if asked.output is not None and reader.offset is not None:
+        _check_kept(reader.offset.size, str(asked.empty))
+    observed = _observe(given, reader, empty)
     points, fit, seen = points_of(observed.seen), asked.fit, observed.seen
     made = replace(
         calibrated(points, fit, observed.quantity, asked.order, seen),
         about=asked.about,
-        provenance=_provenance(asked, observed),
+        provenance=_provenance(asked, observed, empty),
+        offset=() if reader.offset is None else tuple(map(tuple, reader.offset.tolist())),
     )
     if observed.assumed:
         say(
@@ -129,6 +138,15 @@ class _Options:
         return None if isinstance(self.group, str) else self.group
 
 
+class _Recording(NamedTuple):
+    """A recording's frames, where they come from, and whether it says its pitch."""
+
+    path: Path
+    frames: list[Frame]
+    origin: Origin
+    pitch_known: bool
+
+
 class _Observed(NamedTuple):
     """What the recordings hold: observations, where from, of what quantity and shape."""
 
@@ -140,7 +158,7 @@ class _Observed(NamedTuple):
     """Whether recordings that do not say their quantity were taken for the pad's counts."""
 
 
-def _provenance(asked: _Options, observed: _Observed) -> Provenance:
+def _provenance(asked: _Options, observed: _Observed, empty: _Recording | None) -> Provenance:
     from tactile_graph_pads.calibration.calibration import Provenance
 
     return Provenance(
@@ -151,38 +169,41 @@ def _provenance(asked: _Options, observed: _Observed) -> Provenance:
         decoupled=asked.decouple,
         group=asked.group_shape or observed.shape,
         recordings=tuple(observed.origins),
+        empty=None if empty is None else empty.origin,
     )
+
+
+def _check_kept(n_elements: int, empty: str) -> None:
+    """Refuse an offset that no file could keep: its grams would be wrong without."""
+    from tactile_graph.errors import UsageError
+
+    if n_elements > MOST_KEPT:
+        raise UsageError(
+            f"--empty {empty}: has {n_elements} elements, and a calibration file keeps what the "
+            f"empty pad reads of {MOST_KEPT} at most; leave -o out, or record a part of the pad"
+        )
 
 
 # -- reading it ------------------------------------------------------------------------------
 
 
-def _reader(asked: _Options) -> GroupReader:
+def _reader(asked: _Options, empty: _Recording | None) -> GroupReader:
     from tactile_graph.errors import UsageError
-    from tactile_graph_pads.calibration.groups import GroupReader
+    from tactile_graph_pads.calibration.groups import GroupReader, empty_of
     from tactile_graph_pads.pad import load_pad
 
     if asked.decouple and asked.pad_name is None:
         raise UsageError("--decouple needs --pad: whose circuit is it?")
     pad = None if asked.pad_name is None else load_pad(asked.pad_name)
-    empty = _median(asked.empty)
+    rest = None if empty is None else empty_of(empty.frames, str(empty.path))
     return GroupReader(
-        asked.group_shape, asked.at or None, pad, asked.decouple, asked.full_scale, empty
+        asked.group_shape, asked.at or None, pad, asked.decouple, asked.full_scale, rest
     )
 
 
-def _median(empty: Path | None) -> Any:
-    if empty is None:
-        return None
-    import numpy as np
-
-    frames, _ = _frames(empty)
-    return np.median([frame.image.values for frame in frames], axis=0)
-
-
-def _frames(path: Path) -> tuple[list[Any], Origin]:
-    """Return the frames of a recording, read by whichever plugin offers that source."""
-    from tactile_graph.errors import UsageError
+def _recording(path: Path) -> _Recording:
+    """Return a recording, read by whichever plugin offers that source."""
+    from tactile_graph.errors import DataError, UsageError
     from tactile_graph.plugins.registry import installed
     from tactile_graph.steps.injected import Report
     from tactile_graph_pads.calibration.calibration import Origin
@@ -191,36 +212,52 @@ def _frames(path: Path) -> tuple[list[Any], Origin]:
     if not steps.has("steps", SOURCE):
         raise UsageError(f"recordings need the step {SOURCE!r}: {steps.unknown('steps', SOURCE)}")
     frames = list(steps.load("steps", SOURCE)(path=path, report=report))
+    if not frames:
+        raise DataError(str(path), "holds no frame")
     digest = next(iter(report.digests.values()), "")
-    return frames, Origin(path.name, digest, len(frames))
+    pitch_known = not any("pitch is assumed" in what for what in report.counts)
+    return _Recording(path, frames, Origin(path.name, digest, len(frames)), pitch_known)
 
 
-def _observe(given: Sequence[Loaded], reader: GroupReader) -> _Observed:
+def _check_same(first: _Recording, other: _Recording, reader: GroupReader) -> None:
+    """Refuse a recording of another pad, or one that the curve would read in another unit."""
+    from tactile_graph_pads.same_pad import check_same_pad
+
+    check_same_pad(
+        first.frames[0].image,
+        other.frames[0].image,
+        str(first.path),
+        str(other.path),
+        read_as=reader.read_as,
+        pitch_known=first.pitch_known and other.pitch_known,
+    )
+
+
+def _observe(given: Sequence[Loaded], reader: GroupReader, empty: _Recording | None) -> _Observed:
     from tactile_graph.errors import DataError
 
     seen: list[Observation] = []
     origins: list[Origin] = []
-    quantities: dict[str, str] = {}
-    assumed = False
+    first, assumed = empty, False
     for path, load_g in given:
-        frames, origin = _frames(path)
-        for frame in frames:
-            quantities.setdefault(reader.read_as(frame.image.quantity), str(path))
-            assumed |= reader.recorded_as(frame.image.quantity) != frame.image.quantity
-        seen += reader.observations(frames, load_g, str(path))
-        if origin not in origins:
-            origins.append(origin)
-    if len(quantities) > 1:
-        found = ", ".join(f"{q} ({p})" for q, p in quantities.items())
-        raise DataError("calibration", f"recordings of different quantities: {found}")
+        recording = _recording(path)
+        first = recording if first is None else first
+        _check_same(first, recording, reader)
+        recorded = recording.frames[0].image.quantity
+        assumed |= reader.recorded_as(recorded) != recorded
+        seen += reader.observations(recording.frames, load_g, str(path))
+        if recording.origin not in origins:
+            origins.append(recording.origin)
+    assert first is not None
     if not seen:
         raise DataError("calibration", "too few loads: every frame is of the empty pad")
-    quantity = next(iter(quantities))
+    image = first.frames[0].image
+    quantity = reader.read_as(image.quantity)
     if quantity not in ("volt", "siemens", "counts", "raw"):
         raise DataError(
             "calibration", f"only readings can be calibrated, these are {quantity} already"
         )
-    return _Observed(seen, origins, quantity, frames[0].image.shape, assumed)
+    return _Observed(seen, origins, quantity, image.shape, assumed)
 
 
 def _made_by() -> str:

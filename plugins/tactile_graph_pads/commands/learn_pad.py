@@ -100,7 +100,8 @@ def _read(
 ) -> tuple[Stack | None, Stack | None]:
     from tactile_graph.errors import UsageError
     from tactile_graph_pads.calibration.lists import parse_loaded
-    from tactile_graph_pads.learning.recordings import check_same_pad, read_places, read_stack
+    from tactile_graph_pads.learning.recordings import read_places, read_stack
+    from tactile_graph_pads.same_pad import check_same_pad
 
     given = [parse_loaded(text) for text in recordings]
     both = {path.resolve() for path, _ in given} & {path.resolve() for path in empty}
@@ -112,7 +113,7 @@ def _read(
     rest = read_stack([(path, None) for path in empty]) if empty else None
     objects = read_stack(given, told) if given else None
     if rest is not None and objects is not None:
-        check_same_pad(rest, objects, str(empty[0]), str(given[0].path))
+        check_same_pad(rest.image, objects.image, str(empty[0]), str(given[0].path))
     return rest, objects
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
+from tactile_graph.quantities import unit_of
 from tactile_graph_pads.defects import Defects
 from tactile_graph_pads.learned import GOOD, Elements, Learned, Reading, TurnOn
 from tactile_graph_pads.learning.force_curve import ForceCurve, force_curve
@@ -211,7 +212,7 @@ class _Pressed(NamedTuple):
 
 def _pressed(objects: Stack, bare: Array, shows_from: float, known: _KnownPad) -> _Pressed:
     rest, touched = known.rest, bare >= shows_from
-    _refuse_untouched(touched, objects)
+    _refuse_untouched(touched, bare, shows_from, rest, objects)
     new = placements(touched)
     silent = silence(touched[new], bare[new] >= PRESSED * shows_from, rest.good)
     good = rest.good & ~silent.dead
@@ -261,12 +262,40 @@ def _level(
     return best_level([f for f, _ in told], [p for _, p in told], shows_from)
 
 
-def _refuse_untouched(touched: Flags, objects: Stack) -> None:
+def _refuse_untouched(touched: Flags, bare: Array, shows_from: float, rest: Resting,
+                      objects: Stack) -> None:  # fmt: skip
     if touched.any():
         return
+    where = ", ".join(objects.names[:3])
+    if np.isnan(objects.values[:, rest.good]).all():
+        raise DataError(where, f"no reading is valid in any of its {len(objects)} frames")
+    n_below = int((bare <= -shows_from).any(axis=(1, 2)).sum())
+    if n_below:
+        raise DataError(where, _below(-float(bare.min()), n_below, rest, objects))
     raise DataError(
-        ", ".join(objects.names[:3]),
+        where,
         "nothing lies on the pad in any frame: every reading is within the empty pad's noise",
+    )
+
+
+def _below(most: float, n_frames: int, rest: Resting, objects: Stack) -> str:
+    """Return what to say of readings that lie below those of the empty pad, and never above."""
+    unit = unit_of(objects.image.quantity)
+    noise = rest.usual_noise
+    times = f", {most / noise:.3g} times its noise" if noise > 0.0 else ""
+    told = (
+        f"no reading is above the empty pad's, and in {n_frames} of {len(objects)} frames readings "
+        f"are below it, by up to {most:.4g} {unit}{times}: "
+    )
+    if noise == 0.0:
+        level = float(np.median(rest.offset[rest.good]))
+        return told + (
+            f"the empty pad reads {level:.4g} {unit} without any noise, as at full scale; record "
+            "it again with nothing on it, or below full scale"
+        )
+    return told + (
+        "were the two recordings swapped, or has the pad drifted? Only readings that rise under "
+        "pressure are learned from; those that fall are turned round by a preset's invert_from"
     )
 
 

@@ -14,6 +14,7 @@ from tactile_graph.errors import DataError, UsageError, did_you_mean
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame, Image
+from tactile_graph_pads.same_pad import check_same_pad
 
 Array = NDArray[np.float64]
 Places = tuple[tuple[float, float], ...]
@@ -94,7 +95,7 @@ def read_stack(
     for number, (path, load_g) in enumerate(files):
         for n, frame in enumerate(read(path=path, report=report)):
             if frames:
-                _same_pad(frames[0], frame, str(files[of[0]][0]), str(path))
+                check_same_pad(frames[0].image, frame.image, str(files[of[0]][0]), str(path))
             frames.append(frame)
             of.append(number)
             known.append(_places(frame, (places or {}).get(path.name), n))
@@ -115,39 +116,9 @@ def read_stack(
     )
 
 
-def check_same_pad(a: Stack, b: Stack, a_name: str, b_name: str) -> None:
-    """Refuse recordings of different pads.
-
-    Raises
-    ------
-    DataError
-    """
-    _same_pad(Frame(a.image), Frame(b.image), a_name, b_name)
-
-
 def _with_nan(image: Image) -> Array:
     values = np.asarray(image.values, np.float64)
     return values if image.valid is None else np.where(image.valid, values, np.nan)
-
-
-def _same_pad(first: Frame, other: Frame, first_name: str, name: str) -> None:
-    a, b = first.image, other.image
-    if a.shape != b.shape:
-        raise DataError(
-            name,
-            f"has {b.rows} x {b.columns} elements, but {first_name} has {a.rows} x {a.columns}: "
-            "recordings of one pad are needed",
-        )
-    if a.quantity != b.quantity:
-        raise DataError(
-            name, f"holds {b.quantity}, but {first_name} {a.quantity}: convert one of them"
-        )
-    if not np.allclose(a.pitch_cm, b.pitch_cm, rtol=1e-3):
-        raise DataError(
-            name,
-            f"has a pitch of {b.pitch_cm[0]:g} x {b.pitch_cm[1]:g} cm, but {first_name} of "
-            f"{a.pitch_cm[0]:g} x {a.pitch_cm[1]:g} cm",
-        )
 
 
 def _places(frame: Frame, told: Mapping[int | None, Places] | None, n: int) -> Places | None:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import shlex
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
+from tactile_graph.cli.pasted import pasted, pasted_path
 from tactile_graph.cli.say import say
 from tactile_graph.cli.targets import check_targets
 from tactile_graph.pipeline.document import in_yaml
@@ -151,19 +151,19 @@ def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
         say(f"  not {names}: {reason}")
     labels = [sensor.label for sensor in looked.sensors if sensor.label]
     if len(labels) > 1:
-        say(f"  one sensor alone: add --with sensor={shlex.quote(labels[0])}")
+        say(f"  one sensor alone: add --with sensor={pasted(labels[0])}")
     if looked.pitch_assumed:
         say("  where the pitch is known, add --with pitch_cm=…: lengths are wrong without")
 
 
 def _commands(looked: Looked, works: _Works, settings: Sequence[str]) -> list[str]:
     """Return command lines that work on a recording, the reader's settings with them."""
-    told = "".join(f" --with {shlex.quote(s)}" for s in settings)
-    path = shlex.quote(str(looked.path))
+    told = "".join(f" --with {pasted(s)}" for s in settings)
+    path = pasted_path(str(looked.path))
     runs = [f"tactile-graph run {name} {path}{told}" for name in works.names[:MOST_SHOWN]]
     chosen = looked.chosen.replace("/", "-")
     name = "-".join(filter(None, (looked.path.stem, chosen)))
-    target = shlex.quote(name + other_kind(looked.path))
+    target = pasted_path(name + other_kind(looked.path))
     return [*runs, f"tactile-graph convert {path} {target}{told}"]
 
 
@@ -183,12 +183,15 @@ def _levelled(looked: Looked, works: _Works, settings: Sequence[str]) -> str:
         return ""
     path = str(looked.path)
     source = ", ".join([f"path: {json.dumps(path)}", *(s.replace("=", ": ", 1) for s in settings)])
-    dumped = in_yaml(path, width=10**9, allow_unicode=True).removesuffix("\n...\n")
-    plain = not settings and dumped == path  # 2024-03-01 would be read as a date
-    value = path if plain else f"{{{source}}}"
-    told = "".join(f" --with {shlex.quote(s)}" for s in settings)
-    setting = shlex.quote(f"{works.levels[name]}.noise_of={value}")
-    return f"tactile-graph run {name} {shlex.quote(path)}{told} --set {setting}"
+    value = path if not settings and _is_plain(path) else f"{{{source}}}"
+    told = "".join(f" --with {pasted(s)}" for s in settings)
+    setting = pasted(f"{works.levels[name]}.noise_of={value}")
+    return f"tactile-graph run {name} {pasted_path(path)}{told} --set {setting}"
+
+
+def _is_plain(path: str) -> bool:
+    """Return whether a path is to YAML what it is: 2024-03-01 is a date, and *.npy no text."""
+    return in_yaml(path, width=10**9, allow_unicode=True).removesuffix("\n...\n") == path
 
 
 def _works(frames: Sequence[Frame]) -> _Works:

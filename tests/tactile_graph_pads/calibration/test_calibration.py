@@ -17,6 +17,8 @@ from tactile_graph.wires import Image
 from tactile_graph_filters.readings.force import Force
 from tactile_graph_pads.calibration.calibration import (
     Calibration,
+    Origin,
+    Provenance,
     calibration_text,
     load_calibration,
     write_calibration,
@@ -174,3 +176,47 @@ def test_the_step_force_refuses_another_quantity_than_the_file_was_made_of(tmp_p
     step = Force(calibration=tmp_path / "c.yaml")
     with pytest.raises(RuleError, match="the calibration reads volt, got counts"):
         step(Image(np.ones((2, 2)), quantity="counts"))
+
+
+def with_offset() -> Calibration:
+    offset = ((0.1, 0.2), (0.3, 0.4), (0.5, 0.6))
+    return replace(made("isotonic"), offset=offset, provenance=Provenance(empty=Origin("e.npz")))
+
+
+def test_a_file_keeps_what_the_empty_pad_reads_and_the_step_force_takes_it_off(
+    tmp_path: Path,
+) -> None:
+    curve = with_offset()
+    path = tmp_path / "c.yaml"
+    write_calibration(path, curve)
+    assert load_calibration(path) == curve
+    readings = np.linspace(0.2, 2.0, 6).reshape(3, 2)
+    image = Image(readings, quantity="volt")
+    above = curve.grams_of(readings - np.array(curve.offset)).load_g
+    np.testing.assert_allclose(Force(calibration=path)(image).values, above)
+    plain = curve.grams_of(readings).load_g
+    np.testing.assert_allclose(Force(calibration=path, tared=True)(image).values, plain)
+    with pytest.raises(RuleError, match="empty pad of 3 x 2 elements reads, got an image of 2 x 2"):
+        Force(calibration=path)(Image(np.ones((2, 2)), quantity="volt"))
+
+
+def test_a_file_without_an_offset_is_as_it_was() -> None:
+    data = as_data(made("isotonic"))
+    assert "offset" not in data
+    assert "empty" not in data["provenance"]  # type: ignore[operator]
+    assert load_calibration(data).offset == ()
+
+
+@pytest.mark.parametrize(
+    ("offset", "match"),
+    [([[1, 2], [3]], "offset: its rows must be of one length"),
+     ([[1.0, float("nan")]], "offset: every element must be a finite number")],
+)  # fmt: skip
+def test_an_offset_that_no_pad_can_have_is_refused(offset: object, match: str) -> None:
+    with pytest.raises(RecordError, match=match):
+        load_calibration({**as_data(made("isotonic")), "offset": offset})
+
+
+def test_tared_is_said_of_a_calibration() -> None:
+    with pytest.raises(ValueError, match="tared belongs to calibration, which is not given"):
+        Force(tared=True)

@@ -10,7 +10,7 @@ import pytest
 from helpers_calibration import counting_pad, frame, on_four
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Circle, Frame, Image, TrueObject
-from tactile_graph_pads.calibration.groups import GroupReader
+from tactile_graph_pads.calibration.groups import GroupReader, empty_of
 from tactile_graph_pads.pad import load_pad
 
 PAD = load_pad("plain")
@@ -55,7 +55,8 @@ def test_the_empty_pad_is_taken_off() -> None:
     empty = np.full((16, 16), 0.3)
     image = frame(PAD, 400.0).image
     raised = Frame(image.with_values(image.values + empty))
-    (seen,) = GroupReader(empty=empty).observations([raised], 400.0, "a")
+    rest = empty_of([Frame(image.with_values(empty))], "e")
+    (seen,) = GroupReader(empty=rest).observations([raised], 400.0, "a")
     (plain,) = GroupReader().observations([frame(PAD, 400.0)], 400.0, "a")
     np.testing.assert_allclose(seen.readings, plain.readings)
     with pytest.raises(DataError, match=r"on one group.* take off what the empty pad reads"):
@@ -157,5 +158,34 @@ def test_groups_must_lie_on_the_pad() -> None:
         refused(GroupReader((17, 2)), frame(PAD, 100.0))
     with pytest.raises(DataError, match=r"a group at \(15, 3\) reaches over the edge"):
         refused(GroupReader(at=(15, 3)), frame(PAD, 100.0))
-    with pytest.raises(DataError, match=r"has \(16, 16\) elements, the empty pad had \(3, 3\)"):
-        refused(GroupReader(empty=np.zeros((3, 3))), frame(PAD, 100.0))
+    empty = empty_of([Frame(Image(np.zeros((3, 3))))], "e")
+    with pytest.raises(DataError, match=r"0: has 16 x 16 elements, but e has 3 x 3: recordings"):
+        refused(GroupReader(empty=empty), frame(PAD, 100.0))
+
+
+def test_an_empty_pad_in_another_unit_is_refused_unless_the_pad_turns_one_into_the_other() -> None:
+    pad = counting_pad()
+    rest = empty_of([frame(pad, 0.0)], "e")
+    counts = frame(pad, 400.0, quantity="counts")
+    with pytest.raises(DataError, match="frame 0: holds counts, but e volt: convert one of them"):
+        refused(GroupReader(empty=rest), counts)
+    (seen,) = GroupReader(empty=rest, pad=pad).observations([counts], 400.0, "a")
+    true = PAD.forward(on_four(PAD, 400.0)) - PAD.forward(on_four(PAD, 0.0))
+    np.testing.assert_allclose(seen.readings, true[3:5, 4:6].ravel(), atol=1.3e-3)
+
+
+def test_an_element_missing_in_the_empty_pad_does_not_count_as_0() -> None:
+    valid = np.ones((4, 4), np.bool_)
+    valid[1, 2] = False
+    whole = Frame(Image(np.full((4, 4), 100.0)))
+    lacking = Frame(Image(np.where(valid, 104.0, 0.0), valid=valid))
+    with pytest.raises(DataError, match=r"^e: 1 element is missing in all 2 frames .* row 1, col"):
+        empty_of([lacking, lacking], "e")
+    seen = empty_of([whole, lacking, lacking], "e").image
+    assert seen.values[1, 2] == 100.0
+    assert seen.values[0, 0] == 104.0
+
+
+def test_an_empty_recording_holds_frames() -> None:
+    with pytest.raises(DataError, match=r"^e: holds no frame"):
+        empty_of([], "e")

@@ -6,15 +6,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from click.testing import CliRunner
 
 from helpers_calibration import GRAMS, counting_pad, frame, many_files, on_four, one_file
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.plugins import registry
-from tactile_graph.wires import Frame
+from tactile_graph.steps import Report
+from tactile_graph.wires import Frame, Image
+from tactile_graph_filters.readings.force import Force
 from tactile_graph_pads.calibration.calibration import load_calibration
 from tactile_graph_pads.commands.calibrate import calibrate
 from tactile_graph_pads.pad import load_pad
+from tactile_graph_sources.recording import recording
 from tactile_graph_sources.writers.write_npz import write_npz
 
 PAD = load_pad("plain")
@@ -91,6 +95,60 @@ def test_an_empty_recording_is_taken_off(tmp_path: Path) -> None:
     assert made.reading == "counts"
     volts = PAD.forward(on_four(PAD, GRAMS[0]))[3, 4]
     assert made.from_reading == pytest.approx(volts / pad.converter.step_v, abs=0.5)
+
+
+def raised(folder: Path, rest: float = 0.3) -> tuple[list[str], Path]:
+    """Recordings of loads on a pad that reads something when empty, and one of it empty."""
+    empty = np.random.default_rng(0).normal(rest, 0.03, (16, 16))
+    given = []
+    for grams in GRAMS:
+        one = frame(PAD, grams)
+        write_npz(
+            folder / f"{grams:g}.npz", [Frame(one.image.with_values(one.image.values + empty))]
+        )
+        given.append(f"{folder / f'{grams:g}.npz'}={grams}")
+    write_npz(folder / "empty.npz", [Frame(PAD.image(empty, "volt"))])
+    return given, folder / "empty.npz"
+
+
+@pytest.mark.parametrize("fit", ["polynomial", "isotonic"])
+def test_the_line_to_paste_gives_the_grams_of_a_pad_whose_empty_readings_were_taken_off(
+    tmp_path: Path, fit: str
+) -> None:
+    given, empty = raised(tmp_path)
+    out = tmp_path / "c.yaml"
+    run(*given, "--empty", empty, "--fit", fit, "-o", out)
+    first, line = out.read_text().splitlines()[:2]
+    assert "above the empty pad's" in first
+    node = yaml.safe_load(line.split("In a pipeline:")[1])
+    assert node == {"force": {"step": "force", "in": "frame", "with": {"calibration": str(out)}}}
+    step = Force(calibration=Path(node["force"]["with"]["calibration"]))
+    for grams in GRAMS:
+        image = next(iter(recording(path=tmp_path / f"{grams:g}.npz", report=Report()))).image
+        assert step(image).filled().sum() == pytest.approx(grams, rel=0.1), grams
+    told = load_calibration(out).provenance
+    assert told.empty is not None
+    assert (told.empty.file, told.empty.frames) == ("empty.npz", 1)
+
+
+@pytest.mark.slow
+def test_the_offset_that_a_file_keeps_is_in_what_the_curve_reads(tmp_path: Path) -> None:
+    pad = counting_pad()
+    given = many_files(tmp_path, quantity="counts", pad=pad)
+    empty = tmp_path / "empty.npz"
+    write_npz(empty, [frame(pad, 0.0, quantity="counts")])
+    run(*given, "--empty", empty, "--pad", "thesis", "--decouple", "--fit", "power",
+        "-o", tmp_path / "c.yaml")  # fmt: skip
+    offset = np.array(load_calibration(tmp_path / "c.yaml").offset)
+    assert offset.shape == (16, 16)
+    np.testing.assert_allclose(offset, PAD.conductance_s(np.zeros((16, 16))), atol=1e-7)
+
+
+def test_a_pad_of_too_many_elements_to_keep_is_refused_before_the_work(tmp_path: Path) -> None:
+    empty = tmp_path / "e.npz"
+    write_npz(empty, [Frame(Image(np.zeros((130, 130)), quantity="volt"))])
+    refused(UsageError, "has 16900 elements, and a calibration file keeps .* of 16384 at most",
+            f"{tmp_path / 'gone.npz'}=3", "--empty", empty, "-o", tmp_path / "c.yaml")  # fmt: skip
 
 
 @pytest.mark.slow
@@ -172,8 +230,44 @@ def test_different_quantities_do_not_mix(tmp_path: Path) -> None:
     counts = tmp_path / "counts" / "a.npz"
     image = PAD.image(on_four(PAD, 500.0), "counts")
     write_npz(counts, [Frame(image)])
-    refused(DataError, r"recordings of different quantities: volt \(.*\), counts \(",
+    refused(DataError, r"a.npz: holds counts, but .*load-60.npz volt: convert one of them",
             *volts, f"{counts}=500")  # fmt: skip
+    refused(DataError, r"load-60.npz: holds volt, but .*a.npz counts: convert one of them",
+            *volts, "--empty", counts)  # fmt: skip
+
+
+def small(path: Path, shape: tuple[int, int], pitch_cm: float) -> str:
+    values = np.zeros(shape)
+    values[:2, :2] = 1.0
+    write_npz(path, [Frame(Image(values, (pitch_cm, pitch_cm), quantity="volt"))])
+    return f"{path}=500"
+
+
+def test_recordings_of_different_pads_do_not_mix(tmp_path: Path) -> None:
+    a, fewer, wider = (
+        small(tmp_path / name, shape, pitch_cm)
+        for name, shape, pitch_cm in (
+            ("a.npz", (8, 8), 1.0), ("fewer.npz", (8, 6), 1.0), ("wider.npz", (8, 8), 1.3)
+        )
+    )  # fmt: skip
+    refused(DataError, r"fewer.npz: has 8 x 6 elements, but .*a.npz has 8 x 8", a, fewer)
+    refused(DataError, r"wider.npz: has a pitch of 1.3 x 1.3 cm, but .*a.npz of 1 x", a, wider)
+    empty = tmp_path / "wider.npz"
+    refused(DataError, r"a.npz: has a pitch of 1 x 1 cm, but .*wider", a, "--empty", empty)
+
+
+def test_an_assumed_pitch_is_not_held_against_a_known_one(tmp_path: Path) -> None:
+    given = many_files(tmp_path, GRAMS[:3])
+    np.save(tmp_path / "e.npy", np.zeros((3, 16, 16)))
+    refused(DataError, "load-60.npz: holds volt, but .*e.npy raw", *given, "--empty",
+            tmp_path / "e.npy")  # fmt: skip
+    bare = []
+    for grams in GRAMS[:3]:
+        np.save(tmp_path / f"{grams:g}.npy", np.load(tmp_path / f"load-{grams:g}.npz")["values"])
+        bare.append(f"{tmp_path / f'{grams:g}.npy'}={grams}")
+    write_npz(tmp_path / "e.npz", [Frame(PAD.image(np.zeros((16, 16)), "raw"))])
+    said = run(*bare, "--empty", tmp_path / "e.npz", "--fit", "isotonic")
+    assert "fit of 3 loads" in said
 
 
 def test_grams_are_no_readings(tmp_path: Path) -> None:

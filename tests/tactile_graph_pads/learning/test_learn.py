@@ -34,6 +34,37 @@ def learned(folder: Path, pad: MadeUpPad, by: object, n: int = 120) -> LearnedPa
     return learn_pad(empty, stack(folder / "o.npz", changed(list(pad.objects(n)), by)))
 
 
+def refused(empty: np.ndarray, objects: np.ndarray, match: str, folder: Path) -> None:
+    stacks = [
+        stack(folder / name, [Frame.of(v.copy(), quantity="counts") for v in values])
+        for name, values in (("e.npz", empty), ("o.npz", objects))
+    ]
+    with pytest.raises(DataError, match=match):
+        learn_pad(*stacks)
+
+
+def test_readings_below_the_empty_pads_are_not_called_nothing(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    empty, objects = rng.normal(3000.0, 2.0, (2, 40, 8, 8))
+    refused(empty, objects, r"^o.npz: nothing lies on the pad in any frame", tmp_path)
+    fallen = objects.copy()
+    fallen[:30, 3:6, 3:6] -= 1500.0
+    below = (
+        r"^o.npz: no reading is above the empty pad's, and in 30 of 40 frames readings are below "
+        r"it, by up to 150\d counts, 7\d\d times its noise: were the two recordings swapped.*fall"
+    )
+    refused(empty, fallen, below, tmp_path)
+    full = np.full((40, 8, 8), 4095.0)
+    at_full = r"below it, by up to 26\d\d counts: the empty pad reads 4095 counts without any noise"
+    refused(full, fallen, at_full, tmp_path)
+
+
+def test_a_recording_without_a_valid_reading_is_told(tmp_path: Path) -> None:
+    empty = np.random.default_rng(0).normal(3000.0, 2.0, (40, 8, 8))
+    none = np.full((50, 8, 8), np.nan)
+    refused(empty, none, r"^o.npz: no reading is valid in any of its 50 frames", tmp_path)
+
+
 @pytest.mark.slow
 def test_readings_that_stop_at_full_scale_are_told(tmp_path: Path) -> None:
     found = learned(tmp_path, MadeUpPad(), lambda v: np.minimum(np.round(v), 255.0))

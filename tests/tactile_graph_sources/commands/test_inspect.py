@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import os
 import shlex
+import subprocess
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from click.testing import CliRunner
 
 from helpers_dialects import film, flat
@@ -118,6 +121,38 @@ def test_the_commands_it_gives_work_as_they_stand(tmp_path: Path) -> None:
     for command in (contacts + " --frames 2", convert.replace("my mat.zarr", f"{tmp_path}/a.npz")):
         result = CliRunner().invoke(cli, shlex.split(command)[1:])
         assert result.exit_code == 0, result.output
+
+
+NO_YAML = ("*.npy", "[b].npy", "%d.npy", "@x.npy", "&x.npy", "!x.npy", "{a}.npy", '"q.npy',
+           "-x.npy", "2024-13-01", "\udcff.npy", "a\nb.npy")  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("nothing_tried")
+@pytest.mark.parametrize("name", NO_YAML)
+def test_names_that_are_no_yaml_are_inspected_and_the_commands_take_them(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with (tmp_path / name).open("wb") as file:
+        np.save(file, film(30, 12, 12))
+    found = json.loads(run("--json", "--", name))
+    levelled, convert = (
+        next(c for c in found["commands"] if part in c) for part in (" --set ", " convert ")
+    )
+    words = as_the_shell_has_them(levelled)
+    assert Path(words[3]) == Path(name)
+    assert not words[3].startswith("-")
+    value = yaml.safe_load(words[-1].partition("noise_of=")[2])
+    assert name == (value["path"] if isinstance(value, dict) else value)
+    assert Path(as_the_shell_has_them(convert)[2]) == Path(name)
+
+
+def as_the_shell_has_them(command: str) -> list[str]:
+    """Return the words of a command line, as bash hands them over."""
+    told = ["bash", "-c", f"printf '%s\\0' {command}"]
+    raw = subprocess.run(told, capture_output=True, check=True).stdout
+    return [os.fsdecode(word) for word in raw.split(b"\0")[:-1]]
 
 
 @pytest.mark.parametrize(
