@@ -59,9 +59,10 @@ def check_targets(
         for other, before in files[:i]:
             if _same(name, before):
                 raise UsageError(f"{option} {name}: is the file of {other} too; name another file")
-    inputs = [*_of_command_line({option for option, _ in files})]
+    graphs = [*pipelines]
+    inputs = [*_of_command_line({option for option, _ in files}, {g.name for g in graphs})]
     inputs += [_Input(Path(name), READ) for name in read]
-    for graph in pipelines:
+    for graph in graphs:
         inputs += [*_of_pipeline(graph), *_of_settings(graph)]
     for option, name in files:
         for one in inputs:
@@ -78,8 +79,12 @@ def _refuse(option: str, name: str, one: _Input) -> None:
         )
 
 
-def _of_command_line(outputs: set[str]) -> Iterator[_Input]:
-    """Yield what the command line names, but for its outputs."""
+def _of_command_line(outputs: set[str], names: set[str]) -> Iterator[_Input]:
+    """Yield what the command line names, but for its outputs.
+
+    A pipeline's name is none of a folder that is called the same, nor is the word of an option
+    that takes other words than files (``--only hull``).
+    """
     context = click.get_current_context(silent=True)
     if context is None:
         return
@@ -89,8 +94,10 @@ def _of_command_line(outputs: set[str]) -> Iterator[_Input]:
             continue
         option = isinstance(param, click.Option)
         what = f"what {max(param.opts, key=len)} names" if option else READ
+        words_too = not option or isinstance(param.type, click.Path | click.File)
         for path in _sides(context.params.get(param.name or "")):
-            yield _Input(path, what)
+            if str(path) not in names and (words_too or not str(path).isidentifier()):
+                yield _Input(path, what)
 
 
 def _sides(value: Any) -> Iterator[Path]:

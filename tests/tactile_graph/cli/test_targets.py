@@ -200,6 +200,24 @@ def test_what_may_be_named_is_let_through(folder: Path) -> None:
         CliRunner().invoke(written, ["errors", "-o", "errors/errors.csv"], catch_exceptions=False)
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["run", "circle-1", *FILM, "-o", "circle-1/o.csv"],
+        ["run", "circle-1", *FILM, "--only", "boundary", "-o", "boundary/o.csv"],
+        ["graph", "circle-1", "-o", "circle-1/g.svg"],
+        ["compare", "circle-1", "circle-3", *FILM, "--json", "circle-3/c.json"],
+        ["audit", "circle-3", *FILM, "--json", "circle-3/a.json"],
+    ],
+    ids=" ".join,
+)
+def test_a_name_is_no_folder_that_is_called_the_same(folder: Path, words: list[str]) -> None:
+    (folder / words[-1]).parent.mkdir()
+    for _ in range(2):  # the second time there is a file in it
+        got = call(*words)
+        assert got.exit_code == 0, got.output
+
+
 def test_a_folder_that_a_setting_names_may_be_written_into(folder: Path) -> None:
     (folder / "outer.yaml").write_text(OUTER.replace("noise.npz", "store.zarr"))
     loaded = load("outer.yaml")
