@@ -77,6 +77,12 @@ def items() -> tuple[Item, ...]:
     return tuple(sorted(found, key=lambda item: item.place))
 
 
+def known() -> list[str]:
+    """Return every name that `chosen` takes, each once."""
+    names = (n for item in items() for n in (item.id, item.number, item.study) if n)
+    return ["all", *dict.fromkeys(names)]
+
+
 def chosen(names: tuple[str, ...]) -> list[Item]:
     """Return the items of these names, each once, in the order of the thesis.
 
@@ -95,8 +101,7 @@ def chosen(names: tuple[str, ...]) -> list[Item]:
     for name in names:
         found = [i.id for i in items() if name in ("all", i.id, i.number, i.study) and name]
         if not found:
-            known = ["all", *(n for i in items() for n in (i.id, i.number, i.study) if n)]
-            hint = did_you_mean(name, known)
+            hint = did_you_mean(name, known())
             raise UsageError(
                 f"no table, figure or study named {name!r}{hint}; "
                 "'tactile-graph reproduce' lists them"

@@ -7,11 +7,18 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from tactile_graph.cli.completions import (
+    complete_node,
+    complete_pipeline,
+    complete_set,
+    complete_source,
+    complete_with,
+    is_source,
+)
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
 
@@ -79,12 +86,6 @@ def parse_span(ctx: click.Context, param: click.Parameter, value: str | None) ->
     return Span(start, stop)
 
 
-def complete_pipeline(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[Any]:
-    """Return pipeline names and YAML files that begin so, for the shell."""
-    names = [n for n in registry.installed().names("pipelines") if n.startswith(incomplete)]
-    return names + [str(p) for p in Path().glob(f"{incomplete}*.y*ml")]
-
-
 def pipeline_argument(command: F) -> F:
     """Add PIPELINE."""
     return click.argument("pipeline", required=False, shell_complete=complete_pipeline)(command)
@@ -95,19 +96,22 @@ def source_options(command: F) -> F:
     for add in reversed(
         (
             click.argument("recordings", metavar="[RECORDING]...", nargs=-1),
-            click.option("--source", metavar="STEP", help="Take frames from this source step."),
+            click.option("--source", metavar="STEP", shell_complete=complete_source,
+                         help="Take frames from this source step."),
             click.option(
                 "--with", "source_settings", metavar="KEY=VALUE", multiple=True,
+                shell_complete=complete_with,
                 help="A setting of the source, as under 'with:' in YAML; can be repeated.",
             ),
             click.option(
                 "--set", "settings", metavar="NODE.SETTING=VALUE", multiple=True,
+                shell_complete=complete_set,
                 help="A setting of a node instead of the file's, the value as in YAML "
                 "(0.02, [1, 2], true); can be repeated.",
             ),
             click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
                          help="Seed of everything random."),
-            click.option("--only", metavar="NODE", multiple=True,
+            click.option("--only", metavar="NODE", multiple=True, shell_complete=complete_node,
                          help="Ask for this node or node.field instead of the pipeline's outputs; "
                          "can be repeated."),
         )
@@ -245,7 +249,7 @@ def _check_source(step: str, given: dict[str, Any], recordings: bool) -> None:
 
     found = registry.installed()
     if not found.has("steps", step):
-        names = [n for n in found.names("steps") if _is_source(n)]
+        names = [n for n in found.names("steps") if is_source(n)]
         raise UsageError(
             f"--source: {found.unknown('steps', step)}; sources are: {', '.join(names)}"
             if not recordings
@@ -258,9 +262,3 @@ def _check_source(step: str, given: dict[str, Any], recordings: bool) -> None:
     lines = [f"source {step}, {'.'.join(map(str, p)) + ': ' if p else ''}{m}" for p, m in troubles]
     if lines:
         raise UsageError("\n".join(lines))
-
-
-def _is_source(name: str) -> bool:
-    from tactile_graph.plugins.outline import outline
-
-    return outline(registry.installed().offer("steps", name).target).kind == "source"

@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tactile_graph.cli.arguments import Span, complete_pipeline, parse_span
+from tactile_graph.cli.arguments import Span, parse_span
+from tactile_graph.cli.completions import (
+    complete_node,
+    complete_pipeline,
+    complete_set,
+    complete_source,
+    complete_with,
+)
 from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.cli.many.options import (
     Shared,
@@ -52,12 +59,19 @@ Exit codes:
 @click.command(epilog=EPILOG)
 @click.argument("variants", nargs=-1, metavar="VARIANT... [RECORDING]...",
                 shell_complete=complete_pipeline)  # fmt: skip
-@click.option("--source", metavar="STEP", help="Take frames from this source step.")
+@click.option(
+    "--source",
+    metavar="STEP",
+    shell_complete=complete_source,
+    help="Take frames from this source step.",
+)
 @click.option("--with", "source_settings", metavar="KEY=VALUE", multiple=True,
+              shell_complete=complete_with,
               help="A setting of the source; can be repeated.")  # fmt: skip
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
               help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
 @click.option("--set", "settings", metavar="NODE.SETTING=VALUE", multiple=True,
+              shell_complete=complete_set,
               help="A setting of every pipeline that has it; can be repeated.")  # fmt: skip
 @click.option("--sweep", "sweeps", metavar="NODE.SETTING=VALUES", multiple=True,
               help="Values of a setting in turn, START:STOP:STEP (stop included) or A,B,C, for "
@@ -71,7 +85,7 @@ Exit codes:
               "told where nobody knows the truth.")  # fmt: skip
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
               help="Seed of everything random.")  # fmt: skip
-@click.option("--only", metavar="NODE", multiple=True,
+@click.option("--only", metavar="NODE", multiple=True, shell_complete=complete_node,
               help="Ask every variant for this node or node.field instead of its outputs; can be "
               "repeated.")  # fmt: skip
 @click.option("--csv", "csv_path", metavar="FILE|FOLDER",

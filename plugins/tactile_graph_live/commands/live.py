@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tactile_graph.cli.arguments import Span, pipeline_argument
+from tactile_graph.cli.completions import complete_set, complete_source, complete_with
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
@@ -62,10 +63,17 @@ def parse_deadline(ctx: click.Context, param: click.Parameter, value: str | None
               help="How the pad hangs on this machine; plugins may know other ways.")  # fmt: skip
 @click.option("--preset", help="The kit's name, or a YAML file; see 'presets'.")
 @click.option("--baud", type=click.IntRange(min=1), help="Instead of the preset's.")
-@click.option("--source", metavar="STEP", help="Take frames from this source step.")
+@click.option(
+    "--source",
+    metavar="STEP",
+    shell_complete=complete_source,
+    help="Take frames from this source step.",
+)
 @click.option("--with", "source_settings", metavar="KEY=VALUE", multiple=True,
+              shell_complete=complete_with,
               help="A setting of the source; can be repeated.")  # fmt: skip
 @click.option("--set", "settings", metavar="NODE.SETTING=VALUE", multiple=True,
+              shell_complete=complete_set,
               help="A setting of a node instead of the file's; can be repeated.")  # fmt: skip
 @click.option("--rate", "rate_hz", type=Finite(min=0, min_open=True), metavar="HZ",
               help="Play a recording, or what is simulated, at so many frames a second instead of "

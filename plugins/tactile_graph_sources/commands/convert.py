@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from tactile_graph.cli.completions import complete_source, complete_with
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 from tactile_graph.plugins.registry import installed
@@ -30,12 +31,18 @@ OFFERS = "recording_writers"
     required=True,
     type=click.Path(path_type=Path),
 )
-@click.option("--source", metavar="STEP", help="Take frames from this source step instead.")
+@click.option(
+    "--source",
+    metavar="STEP",
+    shell_complete=complete_source,
+    help="Take frames from this source step instead.",
+)
 @click.option(
     "--with",
     "settings",
     metavar="KEY=VALUE",
     multiple=True,
+    shell_complete=complete_with,
     help="A setting of the source, such as order=columns; can be repeated.",
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,

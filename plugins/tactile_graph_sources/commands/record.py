@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from tactile_graph.cli.completions import complete_source, complete_with
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 from tactile_graph.cli.targets import check_targets
@@ -38,12 +39,18 @@ Exit codes:
 @click.option("--device", default="serial", show_default=True,
               help="How the pad hangs on this machine; plugins may know other ways.")  # fmt: skip
 @click.option("--preset", help="The kit's name, or a YAML file.")
-@click.option("--source", metavar="STEP", help="Take frames from this source step instead.")
+@click.option(
+    "--source",
+    metavar="STEP",
+    shell_complete=complete_source,
+    help="Take frames from this source step instead.",
+)
 @click.option(
     "--with",
     "settings",
     metavar="KEY=VALUE",
     multiple=True,
+    shell_complete=complete_with,
     help="A setting of that source, or of the device's, as under 'with:'; can be repeated.",
 )
 @click.option("--baud", type=click.IntRange(min=1), help="Instead of the preset's.")

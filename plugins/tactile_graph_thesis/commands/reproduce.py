@@ -20,8 +20,15 @@ if TYPE_CHECKING:
 FOLDER = "thesis-book"
 
 
+def _complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
+    """Return the items that begin so, for the shell."""
+    from tactile_graph_thesis.catalogue import known
+
+    return [name for name in known() if name.startswith(incomplete)]
+
+
 @click.command()
-@click.argument("names", nargs=-1, metavar="[ID…|all]")
+@click.argument("names", nargs=-1, metavar="[ID…|all]", shell_complete=_complete)
 @click.option(
     "-o",
     "--output",

@@ -16,6 +16,7 @@ from tactile_graph.cli.arguments import (
     parse_span,
     pipeline_argument,
 )
+from tactile_graph.cli.completions import complete_set, complete_source, complete_with
 from tactile_graph.cli.many.options import place_asked, side_by_side, workers_options
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
@@ -52,10 +53,17 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
               )  # fmt: skip
 @click.option("--held-out", multiple=True, metavar="RECORDING",
               help="Report on this recording, choose by the others; can be repeated.")  # fmt: skip
-@click.option("--source", metavar="STEP", help="Take frames from this source step.")
+@click.option(
+    "--source",
+    metavar="STEP",
+    shell_complete=complete_source,
+    help="Take frames from this source step.",
+)
 @click.option("--with", "source_settings", metavar="KEY=VALUE", multiple=True,
+              shell_complete=complete_with,
               help="A setting of the source; can be repeated.")  # fmt: skip
 @click.option("--set", "settings", metavar="NODE.SETTING=VALUE", multiple=True,
+              shell_complete=complete_set,
               help="A setting of a node instead of the file's; can be repeated.")  # fmt: skip
 @click.option("--free", "free", metavar="NODE.SETTING=LOW:HIGH", multiple=True,
               help="Choose this setting too: LOW:HIGH, LOW:HIGH:COUNT or A,B,C; can be "

@@ -9,7 +9,7 @@ from itertools import islice
 import click
 
 from tactile_graph.cli.ahead import FRAMES
-from tactile_graph.cli.arguments import complete_pipeline
+from tactile_graph.cli.completions import complete_pipeline
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
 

@@ -368,17 +368,47 @@ def test_schema_names_the_steps_it_left_open(hand_made, monkeypatch):
     assert "left open: 'lost' of plugin 'hand'" in got.stderr
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("words", ["foo ", "run circle-1 --no-such ", "run --plugins -nosuch "])
-def test_completing_a_word_of_a_line_tells_no_error(words: str) -> None:
+def completed(words: str) -> subprocess.CompletedProcess[str]:
     asked = {
         "_TACTILE_GRAPH_COMPLETE": "bash_complete",
         "COMP_WORDS": f"tactile-graph {words}",
         "COMP_CWORD": str(len(words.split(" "))),
     }
-    got = subprocess.run(
+    return subprocess.run(
         [Path(sys.executable).with_name("tactile-graph")], env={**os.environ, **asked},
         capture_output=True, text=True, check=False,
     )  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "words",
+    [
+        "foo ", "run circle-1 --no-such ", "run --plugins -nosuch ", "run no-such --set f",
+        "run --only ", "run circle-1 --source no-such --with ",
+    ],
+)  # fmt: skip
+def test_completing_a_word_of_a_line_tells_no_error(words: str) -> None:
+    got = completed(words)
     assert got.stderr == ""
     assert "error" not in got.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        ("run circle-3 --source sim", ["simulate"]),
+        ("run circle-3 --source simulate --with scen", ["scene="]),
+        ("run circle-3 a.npz --with transp", ["transpose="]),
+        ("run circle-3 --set fine.f", ["fine.factor="]),
+        ("run circle-3 --only fo", ["footprint"]),
+        ("compare circle-3 --set fine.f", ["fine.factor="]),
+        ("live circle-3 --set fine.f", ["fine.factor="]),
+        ("convert a.npz --source sim", ["simulate"]),
+        ("reproduce table-4.", [f"table-4.{k}" for k in (3, 4, 5, 7, 8, 9)]),
+    ],
+)
+def test_a_word_is_completed_by_what_there_is(words: str, offered: list[str]) -> None:
+    lines = [line.partition(",")[2] for line in completed(words).stdout.split()]
+    assert lines == offered
