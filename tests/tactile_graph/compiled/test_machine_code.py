@@ -185,7 +185,7 @@ def test_loops_that_cannot_be_compiled_leave_no_claim(fresh: Any) -> None:
 
 @pytest.mark.slow
 def test_a_folder_without_locks_serves(fresh: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    def no_locks(file: object) -> None:
+    def no_locks(*_: object) -> None:
         raise OSError(errno.ENOLCK, "no locks available")
 
     monkeypatch.setattr(locks, "_lock", no_locks)

@@ -90,10 +90,10 @@ def killed_once(folder: Path, *words: str) -> str:
 
 
 def test_a_comparison_loses_nothing_with_a_worker(tmp_path: Path) -> None:
-    words = ("compare", "circle-1", "circle-3", *DISCS, "--frames", "2500")
+    words = ("compare", "circle-1", "circle-3", *DISCS, "--frames", "8000")
     killed_once(tmp_path, *words, "--csv", "killed.csv", "--json", "killed.json")
     data = json.loads((tmp_path / "killed.json").read_text())
-    assert (data["complete"], data["frames"]["n"]) == (True, 2500)
+    assert (data["complete"], data["frames"]["n"]) == (True, 8000)
 
 
 def test_an_audit_loses_nothing_with_a_worker(tmp_path: Path) -> None:
