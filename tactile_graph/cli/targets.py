@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 STDOUT = "-"
 READ = "what the command reads"
+FILES = ("FILE", "RECORDING")
+"""Metavars of options that take files, whatever their type is."""
 
 
 class _Input(NamedTuple):
@@ -82,8 +84,8 @@ def _refuse(option: str, name: str, one: _Input) -> None:
 def _of_command_line(outputs: set[str], names: set[str]) -> Iterator[_Input]:
     """Yield what the command line names, but for its outputs.
 
-    A pipeline's name is none of a folder that is called the same, nor is the word of an option
-    that takes other words than files (``--only hull``).
+    A pipeline's name is none of a folder that is called the same. Of an option whose type is not a
+    file's, words count behind a ``=``, where its metavar says so, and as YAML files.
     """
     context = click.get_current_context(silent=True)
     if context is None:
@@ -94,9 +96,13 @@ def _of_command_line(outputs: set[str], names: set[str]) -> Iterator[_Input]:
             continue
         option = isinstance(param, click.Option)
         what = f"what {max(param.opts, key=len)} names" if option else READ
-        words_too = not option or isinstance(param.type, click.Path | click.File)
+        metavar = param.metavar or ""
+        files = (
+            isinstance(param.type, click.Path | click.File) or metavar in FILES or "=" in metavar
+        )
         for path in _sides(context.params.get(param.name or "")):
-            if str(path) not in names and (words_too or not str(path).isidentifier()):
+            taken = not option or files or path.suffix in (".yaml", ".yml")
+            if taken and str(path) not in names:
                 yield _Input(path, what)
 
 

@@ -208,6 +208,7 @@ def test_what_may_be_named_is_let_through(folder: Path) -> None:
         ["graph", "circle-1", "-o", "circle-1/g.svg"],
         ["compare", "circle-1", "circle-3", *FILM, "--json", "circle-3/c.json"],
         ["audit", "circle-3", *FILM, "--json", "circle-3/a.json"],
+        ["run", "circle-1", *FILM, "--format", "jsonl", "--only", "boundary", "-o", "boundary/b"],
     ],
     ids=" ".join,
 )

@@ -151,7 +151,7 @@ def chosen(
         If there is none, or several could be meant, or the one is too large.
     """
     where, asked, others = str(reading.path), reading.told.sensor, unread or {}
-    stacks = [n for n, s in shapes.items() if is_stack(s)]
+    stacks = stacks_among(shapes)
     listed = one_of(f"{n} {s}" for n, s in shapes.items())
     if asked:
         if found := others.get(asked):
@@ -204,13 +204,22 @@ def is_stack(shape: tuple[int, ...]) -> bool:
     return len(shape) in (2, 3) and min(shape[-2:]) > 1 and shape[0] > 0
 
 
+def stacks_among(shapes: Mapping[str, tuple[int, ...]]) -> list[str]:
+    """Return the names of arrays that may be the frames.
+
+    One of a single frame is none beside others: it is a background, or a camera's matrix.
+    """
+    stacks = [n for n, shape in shapes.items() if is_stack(shape)]
+    return [n for n in stacks if len(shapes[n]) != 3 or shapes[n][0] > 1] or stacks
+
+
 def numbered(shapes: Mapping[str, tuple[int, ...]]) -> list[str]:
     """Return the names of matrices that are the frames of one recording, in their order.
 
     They are alike but for a number, as ``frame_07`` or ``arr_7`` is, and of one shape; none where
     anything else could be a stack as well.
     """
-    found = {n: _NUMBERED.fullmatch(n) for n, s in shapes.items() if is_stack(s)}
+    found = {n: _NUMBERED.fullmatch(n) for n in stacks_among(shapes)}
     stems = {(m[1].lower(), m[3]) if m else None for m in found.values()}
     one_shape = len({shapes[n] for n in found}) == 1
     if len(found) < 2 or len(stems) > 1 or None in stems or not one_shape:

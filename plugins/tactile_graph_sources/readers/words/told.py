@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
 from collections.abc import Sequence
@@ -11,6 +12,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
+from tactile_graph.pipeline.document import in_yaml
 from tactile_graph_sources.readers.words.names import NOTHING_TOLD, ColumnsTold
 
 _LIKELY = re.compile(
@@ -115,6 +117,12 @@ class Told:
         )
 
 
+def _in_yaml(text: str) -> str:
+    """Return a text as YAML that is read as that text: in quotes where it looks like a number."""
+    plain = in_yaml(text, width=10**9, allow_unicode=True).removesuffix("\n...\n") == text
+    return text if plain else json.dumps(text, ensure_ascii=False)
+
+
 def as_typed(what: str, sensors: Sequence[str] = ()) -> str:
     """Return how the settings that a refusal asks for are typed on a command line; empty if none.
 
@@ -124,7 +132,8 @@ def as_typed(what: str, sensors: Sequence[str] = ()) -> str:
     asked = {word for m in _ASKED.finditer(what) for word in re.findall(_SETTING, m[1])}
     likely = _LIKELY.search(what)
     rows, columns = [g for g in likely.groups() if g] if likely else ("…", "…")
-    values = {"rows": rows, "columns": columns, "sensor": [*sensors, "…"][0], **such_as}
+    sensor = _in_yaml(sensors[0]) if sensors else "…"
+    values = {"rows": rows, "columns": columns, "sensor": sensor, **such_as}
     pairs = [f"{s}={values.get(s, '…')}" for s in _SETTINGS if s in asked or s in such_as]
     typed = [f"--with {shlex.quote(p) if '…' not in p else p}" for p in pairs]
     return f" (as typed: {' '.join(typed)})" if typed else ""

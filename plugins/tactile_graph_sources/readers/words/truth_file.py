@@ -258,10 +258,10 @@ def _object(where: str, row: Mapping[str, str]) -> TrueObject | None:
     shape, names = SHAPES.get(kind, (None, ()))
     about = (*BY, "kind", "name") if shape is None else (*BY, "kind", *names, "weight_g", "name")
     for name, text in row.items():
-        if text and name not in about:
+        if text and name not in about and not _is_nothing(text):
             has = f"kind {kind!r} has no {name}, got {text!r}"
-            way = "decimal commas need ';' or tabs between the columns" if names else "leave it out"
-            raise DataError(where, f"{has}; {way}")
+            commas = "; decimal commas need ';' or tabs between the columns" if names else ""
+            raise DataError(where, f"{has}; leave it out{commas}")
     if shape is None:
         return None
     numbers = [_number(where, name, row.get(name, "")) for name in names]
@@ -270,6 +270,14 @@ def _object(where: str, row: Mapping[str, str]) -> TrueObject | None:
     weight = row.get("weight_g", "")
     grams = _number(where, "weight_g", weight) if weight else None
     return TrueObject(shape(*numbers), grams, row.get("name", ""))
+
+
+def _is_nothing(text: str) -> bool:
+    """Return whether a cell is a zero or no number, with which tables of many kinds are filled."""
+    try:
+        return not float(text) or math.isnan(float(text))
+    except ValueError:
+        return False
 
 
 def _number(where: str, name: str, text: str) -> float:

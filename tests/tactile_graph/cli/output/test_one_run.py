@@ -137,17 +137,19 @@ def test_a_run_that_is_killed_leaves_its_file_alone_and_free(tmp_path: Path) -> 
         "--with", "scene=discs", "--frames",
     ]  # fmt: skip
     with subprocess.Popen([*words, "1000000", "-o", "out.jsonl"], cwd=tmp_path) as first:
-        while not (tmp_path / "out.jsonl.meta.json").exists():
-            assert first.poll() is None
-            time.sleep(0.05)
-        second = subprocess.run(
-            [*words, "3", "-o", "out.jsonl"], cwd=tmp_path, capture_output=True, text=True,
-            check=False,
-        )  # fmt: skip
-        assert (second.returncode, second.stderr.splitlines()[-1]) == (
-            2, f"error: {REFUSED.format('out.jsonl')}",
-        )  # fmt: skip
-        first.send_signal(signal.SIGKILL)
+        try:
+            while not (tmp_path / "out.jsonl.meta.json").exists():
+                assert first.poll() is None
+                time.sleep(0.05)
+            second = subprocess.run(
+                [*words, "3", "-o", "out.jsonl"], cwd=tmp_path, capture_output=True, text=True,
+                check=False,
+            )  # fmt: skip
+        finally:  # a failure, too, waits for its end
+            first.send_signal(signal.SIGKILL)
+    assert (second.returncode, second.stderr.splitlines()[-1]) == (
+        2, f"error: {REFUSED.format('out.jsonl')}",
+    )  # fmt: skip
     assert {p.name for p in tmp_path.iterdir()} == {"out.jsonl", "out.jsonl.meta.json"}
     lines = (tmp_path / "out.jsonl").read_text().splitlines()
     assert [json.loads(line)["frame"] for line in lines[:-1]] == [*range(len(lines) - 1)]

@@ -147,3 +147,12 @@ def test_far_too_many_values_are_refused_with_a_way_out(tmp_path: Path) -> None:
         DataError, match=r"holds 1,18\d,[\d,]+ values; allowed are 500,000,000: save"
     ):
         frames_of(made(tmp_path / "a.h5", huge))
+
+
+@pytest.mark.parametrize("name", ["background", "z/pose"])
+def test_a_stack_of_one_frame_beside_the_frames_is_none(tmp_path: Path, name: str) -> None:
+    def beside(file: Any) -> None:
+        file[name] = OBLONG[:1] if name == "background" else np.eye(4)[None]
+
+    frames, _ = frames_of(made(tmp_path / "a.h5", with_stack, beside))
+    assert len(frames) == len(OBLONG)

@@ -178,3 +178,13 @@ def test_a_true_shape_of_a_plugins_own_cannot_be_written():
     told = "a true Stroke cannot be written; what can is: circle, ellipse, polygon, rectangle"
     with pytest.raises(UsageError, match=told):
         truth_to_json([(TrueObject(Stroke(1.0, 2.0, 3.0)),)])
+
+
+def test_zeros_where_a_kind_needs_nothing_fill_a_table_of_many_kinds(tmp_path: Path) -> None:
+    path = tmp_path / "t.csv"
+    path.write_text(
+        "frames,kind,x_cm,y_cm,radius_cm,angle_deg,weight_g\n0,circle,1,2,1,0,100\n1,none,0,0,nan,0,0\n"
+    )
+    first, second = with_truth(frames(2), path)
+    assert [t.weight_g for t in first.truth or ()] == [100.0]
+    assert second.truth == ()
