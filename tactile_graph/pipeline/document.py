@@ -15,6 +15,7 @@ import yaml
 from tactile_graph.errors import Mark, PipelineError, Problem, UsageError, shown
 from tactile_graph.pipeline import yaml_numbers
 from tactile_graph.pipeline.yaml_numbers import in_yaml as in_yaml
+from tactile_graph.pipeline.yaml_numbers import is_plain as is_plain
 
 Path = tuple[str | int, ...]
 MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of values

@@ -12,7 +12,7 @@ import click
 from tactile_graph.cli.pasted import pasted, pasted_path
 from tactile_graph.cli.say import say
 from tactile_graph.cli.targets import check_targets
-from tactile_graph.pipeline.document import in_yaml
+from tactile_graph.pipeline.document import is_plain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -183,15 +183,10 @@ def _levelled(looked: Looked, works: _Works, settings: Sequence[str]) -> str:
         return ""
     path = str(looked.path)
     source = ", ".join([f"path: {json.dumps(path)}", *(s.replace("=", ": ", 1) for s in settings)])
-    value = path if not settings and _is_plain(path) else f"{{{source}}}"
+    value = path if not settings and is_plain(path) else f"{{{source}}}"
     told = "".join(f" --with {pasted(s)}" for s in settings)
     setting = pasted(f"{works.levels[name]}.noise_of={value}")
     return f"tactile-graph run {name} {pasted_path(path)}{told} --set {setting}"
-
-
-def _is_plain(path: str) -> bool:
-    """Return whether a path is to YAML what it is: 2024-03-01 is a date, and *.npy no text."""
-    return in_yaml(path, width=10**9, allow_unicode=True).removesuffix("\n...\n") == path
 
 
 def _works(frames: Sequence[Frame]) -> _Works:

@@ -12,7 +12,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
-from tactile_graph.pipeline.document import in_yaml
+from tactile_graph.pipeline.document import is_plain
 from tactile_graph_sources.readers.words.names import NOTHING_TOLD, ColumnsTold
 
 _LIKELY = re.compile(
@@ -119,8 +119,7 @@ class Told:
 
 def _in_yaml(text: str) -> str:
     """Return a text as YAML that is read as that text: in quotes where it looks like a number."""
-    plain = in_yaml(text, width=10**9, allow_unicode=True).removesuffix("\n...\n") == text
-    return text if plain else json.dumps(text, ensure_ascii=False)
+    return text if is_plain(text) else json.dumps(text, ensure_ascii=False)
 
 
 def as_typed(what: str, sensors: Sequence[str] = ()) -> str:
