@@ -225,3 +225,11 @@ def test_a_folder_that_a_setting_names_may_be_written_into(folder: Path) -> None
     check_targets([("-o", "store.zarr/zarr.json")], [loaded])
     with pytest.raises(UsageError, match="what setting 'noise_of' of node 'footprint' names"):
         check_targets([("-o", "store.zarr")], [loaded])
+
+
+def test_the_name_of_a_pad_is_no_file_that_is_called_the_same(folder: Path) -> None:
+    words = ["record", "glove-1", "--source", "simulate", "--frames", "2", "--pad", "glove-1"]
+    for more in ([], ["--append"]):
+        got = call(*words, *more)
+        assert got.exit_code == 0, got.output
+    assert (folder / "glove-1").exists()

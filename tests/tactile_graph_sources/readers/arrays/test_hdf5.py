@@ -156,3 +156,12 @@ def test_a_stack_of_one_frame_beside_the_frames_is_none(tmp_path: Path, name: st
 
     frames, _ = frames_of(made(tmp_path / "a.h5", with_stack, beside))
     assert len(frames) == len(OBLONG)
+
+
+def test_a_name_that_looks_like_a_number_is_typed_in_quotes(tmp_path: Path) -> None:
+    def two(file: Any) -> None:
+        file["08"], file["09"] = OBLONG, OBLONG[:, :4]
+
+    with pytest.raises(DataError, match="several datasets") as got:
+        frames_of(made(tmp_path / "a.h5", two))
+    assert "(as typed: --with 'sensor=\"08\"')" in str(got.value)
