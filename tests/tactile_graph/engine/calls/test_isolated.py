@@ -63,7 +63,7 @@ def test_a_step_that_hangs_is_killed_and_started_anew_while_the_others_go_on() -
     assert runner(frame(10))["risky"] == 11
     began = time.monotonic()
     hung = runner(frame(steps.HANGS, 1))
-    assert 0.4 < time.monotonic() - began < 5
+    assert 0.4 < time.monotonic() - began < 30
     outcome = hung.outcome("risky")
     assert isinstance(outcome, Failed)
     assert "took longer than its 0.5 s: its process was killed, a new one starts" in outcome.reason
