@@ -21,9 +21,10 @@ ANGLES = 12
 OWN = 1.0 / 12.0  # variance of an element's own extent, in pitches
 HALF_AXIS = 1.87  # half axis of a sketch over the standard deviation along it
 THINNEST = 0.05  # variance across a sketch over the mean one
-CLIMBED = 7  # cuts, of 24, that are climbed from, and one more for each pair that is asked for
-SAME = 0.6
-"""Distance, in pitches, of the centres of sketches that are the same."""
+CLIMBED = 4  # cuts, of 24, that are climbed from, and one more for each pair that is asked for
+SAME, SAME_CUT = 0.6, 0.1
+"""Distance, in pitches, of the centres of sketches that are the same, and of those of cuts that
+leave the same elements on either side: half of 24."""
 
 
 @compiled_as_is
@@ -175,9 +176,13 @@ def partings(
         for s in range(2 * ANGLES):
             if area[s] < area[fullest]:
                 fullest = s
-        if area[fullest] < math.inf:
-            area[fullest] = math.inf
-            worth[fullest] = settle_sketches(problem, starts[fullest], 0, 1)
+        if area[fullest] == math.inf:
+            break
+        area[fullest] = math.inf
+        for s in range(2 * ANGLES):
+            if area[s] < math.inf and _same(starts[fullest], starts[s], SAME_CUT * problem.grid[2]):
+                area[s] = math.inf
+        worth[fullest] = settle_sketches(problem, starts[fullest], 0, 1)
     for m in range(evidence.shape[0]):
         evidence[m], best = -math.inf, 0
         for s in range(2 * ANGLES):
