@@ -73,3 +73,30 @@ class Outer(NamedTuple):
 def nested(x: float) -> Outer:
     """Return named tuples in one, with arrays."""
     return Outer(Inner(x, np.full(2, x)), Inner(2.0 * x, np.full((1, 3), 2.0 * x)), 3)
+
+
+@compiled_as_is
+def row_sum(row: NDArray[np.float64]) -> float:
+    """Return a row's sum."""
+    total = 0.0
+    for value in row.flat:
+        total += value
+    return total
+
+
+@compiled_as_is
+def firsts(table: NDArray[np.float64], n: int) -> NDArray[np.float64]:
+    """Return a copy of the first rows."""
+    made = np.empty((n, len(table[0])))
+    for i in range(n):
+        made[i] = table[i]
+    return made
+
+
+@compiled_as_is
+def of_rows(table: NDArray[np.float64], n: int) -> tuple[NDArray[np.float64], float]:
+    """Return a copy of the first rows, and their sum."""
+    total = 0.0
+    for i in range(n):
+        total += row_sum(table[i])
+    return firsts(table, n), total

@@ -18,6 +18,7 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.runtime import rtsys
 
+from tactile_graph.compiled.counted import are_its_own, taken_in
 from tactile_graph.compiled.given_back import given_back_by_c
 from tactile_graph.compiled.looked_at import arrays_looked_at
 from tactile_graph.compiled.numbas_own import made_parts
@@ -28,7 +29,7 @@ from tactile_graph.locks import Lock
 OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True}
 """Machine code lets other threads of Python run: the one that reads a pad must not wait for it."""
 
-MADE = "arrays looked at, given back by C"
+MADE = "arrays looked at, given back by C, counted without a lock"
 """How entries are made, beside numba's version: machine code made otherwise is made anew."""
 POLL_S = 0.02
 """Between two looks whether another process has finished."""
@@ -105,6 +106,7 @@ class Entry(JITCodeLibrary):
     """The code of a kernel that Python calls, with all below it."""
 
     _linking_libraries: list[CodeLibrary]
+    counts_are_its_own = False
 
     def finalize(self) -> None:
         """Take all code below in, optimise and emit it."""
@@ -112,6 +114,21 @@ class Entry(JITCodeLibrary):
         self._linking_libraries = callers_first(self._linking_libraries)
         with _taking_in():
             super().finalize()
+
+    def _optimize_final_module(self) -> None:
+        """Optimise in numba's two rounds; between them, counts of references are taken in."""
+        if not self.counts_are_its_own:
+            super()._optimize_final_module()
+            return
+        codegen = self._codegen
+        first, its_builder = codegen._module_pass_manager(
+            loop_vectorize=codegen._loopvect, slp_vectorize=False, opt=codegen._opt_level,
+            cost="cheap",
+        )  # fmt: skip
+        first.run(self._final_module, its_builder)
+        self._final_module = taken_in(self._final_module)
+        second, its_builder = codegen._module_pass_manager()
+        second.run(self._final_module, its_builder)
 
 
 def callers_first(libraries: Iterable[CodeLibrary]) -> list[CodeLibrary]:
@@ -176,6 +193,7 @@ class EntryCompiler(Compiler):
     def define_pipelines(self) -> Any:
         """Return numba's own passes, that fill a library of ours."""
         _into(self.state, Entry)
+        self.state.library.counts_are_its_own = are_its_own(self.state.args)
         return super().define_pipelines()
 
     def compile_extra(self, func: Callable[..., Any]) -> CompileResult:
