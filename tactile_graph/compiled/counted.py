@@ -16,6 +16,8 @@ from typing import Any
 
 from llvmlite import binding
 from numba import types
+from numba.core.types.containers import BaseTuple
+from numba.core.types.misc import NoneType
 
 CALLED = re.compile(r"^(?!define|declare)(.*)@NRT_(incref|decref)\(", re.MULTILINE)
 """A call of the function that counts one more, or one less."""
@@ -61,8 +63,8 @@ def are_its_own(arguments: Iterable[types.Type]) -> bool:
     """
     return all(
         are_its_own(kind)
-        if isinstance(kind, types.BaseTuple)
-        else isinstance(kind, types.Array | types.Number | types.Boolean | types.NoneType)
+        if isinstance(kind, BaseTuple)
+        else isinstance(kind, types.Array | types.Number | types.Boolean | NoneType)
         for kind in arguments
     )
 

@@ -106,6 +106,7 @@ class Entry(JITCodeLibrary):
     """The code of a kernel that Python calls, with all below it."""
 
     _linking_libraries: list[CodeLibrary]
+    _final_module: Any
     counts_are_its_own = False
 
     def finalize(self) -> None:

@@ -32,8 +32,9 @@ ROUNDS, FEW_ROUNDS, SOFT, ENOUGH = 8, 4, 4, 0.1
 """Rounds in which an outline of another kind is brought to its mode, of the same kind, and of the
 soft search for the first kind that is drawn; the gain still promised below which they end."""
 
-TRIES = 24
-"""Other starts of an outline that is drawn by itself."""
+TRIES, HOPEFUL = 24, 4.0
+"""Other starts of an outline that is drawn by itself, and how much less log evidence than the best
+a kind may have for them."""
 
 AROUND = np.array([0.25, 0.25, 0.2, 0.2, 0.15, 0.0])
 """How far other starts lie off: lengths in cm, an angle in radians."""
@@ -273,16 +274,19 @@ def _likeliest_kind(
 ) -> int:  # fmt: skip
     """Write one of some outlines as the kind of the most evidence; return which that is.
 
-    Each other kind begins near the outline; with ``tries`` each begins around ``begun``, too.
+    Each other kind begins near the outline; with ``tries`` each that may be the best begins around
+    ``begun``, too.
     """
     own, point = one_of(outlines.kinds[k], outlines.corners[k], outlines.points[k]), np.empty(WIDTH)
     best, count = its, may_be.kinds.shape[0]
     most = settle(rest, own, 0, 0, ENOUGH, np.empty((WIDTH, WIDTH)))
+    logs = np.full(count, most)
     for s in range(2 * count if tries else count):
         j, anew = s % count, s >= count
-        if j == its and not anew:
+        if (logs[j] < most - HOPEFUL) if anew else (j == its):
             continue
         log = settled_as(rest, may_be, j, begun if anew else own, anew, point)
+        logs[j] = max(log, logs[j]) if anew else log
         if log > most:
             best, most = j, log
             for m in range(WIDTH):

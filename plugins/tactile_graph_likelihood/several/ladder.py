@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.alike import alikeness
@@ -224,15 +225,38 @@ def neighbours(own: Places, unexplained: Values, count: int) -> list[Pair]:
 
     ``own`` is the number of what each element belongs to, from 0.
     """
-    masks = [own == k for k in range(count)]
-    wide = [dilated(mask) for mask in masks]
-    found = [
-        ((a, b), masks[a] | masks[b], float(unexplained[wide[a] | wide[b]].sum()))
-        for a in range(count)
-        for b in range(a)
-        if (wide[a] & wide[b]).any()
-    ]
+    near = left_near.call(own, unexplained, count)
+    pairs = [(a, b) for a in range(count) for b in range(a) if near[b, a]]
+    found = [((a, b), (own == a) | (own == b), float(near[a, b])) for a, b in pairs]
     return sorted(found, key=lambda it: -it[2])
+
+
+@compiled_as_is
+def left_near(own: Places, unexplained: Values, count: int) -> Values:
+    """Return what is unexplained on two's elements and next to them, and which two lie near.
+
+    Returns
+    -------
+    ndarray, shape (K, K)
+        Below the diagonal what is unexplained; above it 1 where an element is next to both, 0 where
+        none is.
+    """
+    rows, cols = own.shape
+    found, here = np.zeros((count, count)), np.zeros(count, np.bool_)
+    for i in range(rows):
+        for j in range(cols):
+            here[:] = False
+            for r in range(max(i - 1, 0), min(i + 2, rows)):
+                for c in range(max(j - 1, 0), min(j + 2, cols)):
+                    if 0 <= own[r, c] < count:
+                        here[own[r, c]] = True
+            for a in range(count):
+                for b in range(a):
+                    if here[a] or here[b]:
+                        found[a, b] += unexplained[i, j]
+                    if here[a] and here[b]:
+                        found[b, a] = 1.0
+    return found
 
 
 def dilated(mask: Mask) -> Mask:

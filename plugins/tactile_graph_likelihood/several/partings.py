@@ -21,8 +21,8 @@ ANGLES = 12
 OWN = 1.0 / 12.0  # variance of an element's own extent, in pitches
 HALF_AXIS = 1.87  # half axis of a sketch over the standard deviation along it
 THINNEST = 0.05  # variance across a sketch over the mean one
-CLIMBED = 4  # cuts, of 24, that are climbed from, and one more for each pair that is asked for
-SAME, SAME_CUT = 0.6, 0.1
+CLIMBED = 6  # cuts, of 24, that are climbed from, and one more for each pair that is asked for
+SAME, SAME_CUT = 0.6, 0.05
 """Distance, in pitches, of the centres of sketches that are the same, and of those of cuts that
 leave the same elements on either side: half of 24."""
 

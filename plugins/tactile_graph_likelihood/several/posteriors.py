@@ -10,6 +10,7 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
+from tactile_graph_likelihood.geometry.linear import cholesky, inverted
 from tactile_graph_likelihood.geometry.outlines import Values, sizes
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
 from tactile_graph_likelihood.several.kinds import fits_of_kinds
@@ -95,22 +96,96 @@ def posteriors_of(part: Found) -> list[Posterior]:
             raise Degenerate("no outline near the likeliest one is possible: none can be told")
         n = some.points.shape[1]
         here = slice(k * WIDTH, k * WIDTH + n)
-        alone = np.asarray(np.linalg.inv(matrix[here, here]), dtype=np.float64)
-        mean = np.asarray(some.weights @ some.points, dtype=np.float64)
-        off = (some.points - mean) @ _wider(alone, together[here, here]).T
-        covariance = (off * some.weights[:, None]).T @ off
-        covariance /= max(1.0 - float(some.weights @ some.weights), 0.05)
         shift, spread = kinds.apart(n)
-        wider = covariance + spread + spread_of_others(part, found.only(k), n)
-        points = mean + shift + off @ _wider(covariance, wider).T
+        spread = spread + spread_of_others(part, found.only(k), n)
+        points, mean, wider = widened.call(
+            some.points, some.weights, matrix[here, here], together[here, here], spread, shift
+        )
         out.append(
             Posterior(
-                int(found.kinds[k]), int(found.corners[k]), mean + shift, wider, points,
-                some.weights, found.points[k, :n].copy(), some.log_evidence, some.equal_points,
-                0.0, 0.0,
+                int(found.kinds[k]), int(found.corners[k]), mean, wider, points, some.weights,
+                found.points[k, :n].copy(), some.log_evidence, some.equal_points, 0.0, 0.0,
             )
         )  # fmt: skip
     return out
+
+
+class Widened(NamedTuple):
+    """Points, their mean and their covariance: shapes (N, K), (K,) and (K, K)."""
+
+    points: Values
+    mean: Values
+    covariance: Values
+
+
+@compiled_as_is
+def widened(
+    points: Values, weights: Values, alone: Values, together: Values, spread: Values, shift: Values
+) -> Widened:
+    """Return points spread by what is not known of the others, and by how far other answers lie.
+
+    Parameters
+    ----------
+    points, weights : ndarray, shape (N, K) and (N,)
+        Of the outline beside the others as they are.
+    alone : ndarray, shape (K, K)
+        The information there.
+    together : ndarray, shape (K, K)
+        Its covariance from the information of all together.
+    spread, shift : ndarray, shape (K, K) and (K,)
+        What other answers add to the covariance, and to the mean.
+
+    Returns
+    -------
+    Widened
+    """
+    count, n = points.shape
+    mean, off, total = np.zeros(n), np.empty((count, n)), 0.0
+    for i in range(count):
+        total += weights[i] * weights[i]
+        for m in range(n):
+            mean[m] += weights[i] * points[i, m]
+    for i in range(count):
+        for m in range(n):
+            off[i, m] = points[i, m] - mean[m]
+    root, made = np.empty((n, n)), np.zeros((n, n))
+    cholesky(alone, root)
+    spread_by(off, inverted(root), together)
+    for i in range(count):
+        for a in range(n):
+            for b in range(n):
+                made[a, b] += off[i, a] * weights[i] * off[i, b]
+    made /= max(1.0 - total, 0.05)
+    wider = made + spread
+    spread_by(off, made, wider)
+    for m in range(n):
+        mean[m] += shift[m]
+        for i in range(count):
+            off[i, m] += mean[m]
+    return Widened(off, mean, wider)
+
+
+@compiled_as_is
+def spread_by(off: Values, before: Values, after: Values) -> None:
+    """Turn points around 0 of one covariance, in place, into those of another.
+
+    They stay as they are where a covariance is none: of points on one line.
+    """
+    (count, n), root, wide = off.shape, np.empty(before.shape), np.empty(before.shape)
+    if not (cholesky(before, root) and cholesky(after, wide)):
+        return
+    plain = np.empty(n)
+    for i in range(count):
+        for a in range(n):
+            total = off[i, a]
+            for b in range(a):
+                total -= root[a, b] * plain[b]
+            plain[a] = total / root[a, a]
+        for a in range(n):
+            total = 0.0
+            for b in range(a + 1):
+                total += wide[a, b] * plain[b]
+            off[i, a] = total
 
 
 def _sampled(
@@ -197,8 +272,3 @@ def _off(found: Configuration, one: Configuration, n: int) -> Values:
     ratio = math.sqrt(area_of(found) / area_of(one))
     off[2 : 2 + own] = (ratio - 1.0) * one.points[0, 2 : 2 + own]
     return off
-
-
-def _wider(alone: Values, together: Values) -> Values:
-    """Return what turns points of one covariance into points of another."""
-    return np.asarray(np.linalg.cholesky(together) @ np.linalg.inv(np.linalg.cholesky(alone)))

@@ -6,11 +6,14 @@ no single convex outline. No likelihood is asked; it is where a search begins.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.several.partings import OWN, across
+from tactile_graph_likelihood.several.partings import Across, across, spread, summed
 
 Mask = NDArray[np.bool_]
 
@@ -48,25 +51,33 @@ def fullest_halves(mask: Mask, least: int) -> tuple[float, Mask]:
     if n < 2 * least:
         return 0.0, half
     piece = across(mask)
-    x, y = piece.column[piece.order].astype(float), piece.row[piece.order].astype(float)
-    sums = np.cumsum(np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=-1), axis=1)
-    every, first = sums[0, -1], sums[:, least - 1 : n - least]
-    along = np.take_along_axis(piece.along, piece.order, axis=1)
-    apart = along[:, least : n - least + 1] - along[:, least - 1 : n - least] > 1e-9
-    area = np.where(apart, ground(first) + ground(every - first), np.inf)
-    angle, k = np.unravel_index(int(area.argmin()), area.shape)
-    its = piece.order[angle, : int(k) + least]
+    angle, count, gain = fullest_cut.call(piece, np.zeros(mask.shape), least)
+    its = piece.order[angle, :count]
     half[piece.row[its], piece.column[its]] = True
-    return float(ground(every) - area[angle, k]), half
+    return gain, half
 
 
-def ground(sums: Values) -> Values:
-    """Return areas of the ellipses that have the moments of some elements, in elements.
+@compiled_as_is
+def fullest_cut(piece: Across, logs: Values, least: int) -> tuple[int, int, float]:
+    """Return where a straight cut leaves the halves that fill their moments' ellipses best.
 
-    From sums over them along the last axis: number, x, y, xx, xy and yy.
+    ``logs``, shape (rows, columns), are as in `summed`; what they hold does not matter.
+
+    Returns
+    -------
+    (int, int, float)
+        At which angle, after how many elements, and how much less ground the halves' ellipses take
+        than the whole's, in elements.
     """
-    n, x, y, xx, xy, yy = np.moveaxis(sums, -1, 0)
-    across_x, across_y = xx / n - (x / n) ** 2 + OWN, yy / n - (y / n) ** 2 + OWN
-    both = xy / n - x * y / (n * n)
-    area: Values = np.sqrt(np.maximum(across_x * across_y - both * both, OWN * OWN))
-    return 4.0 * np.pi * area
+    n = piece.row.shape[0]
+    angle, count, best, whole, place = 0, least, math.inf, 0.0, np.empty(n, np.int64)
+    for t in range(piece.order.shape[0]):
+        along, order = piece.along[t], piece.order[t]
+        sums = summed(piece, t, logs, place)
+        whole = spread(sums[n]) if t == 0 else whole
+        for k in range(least, n - least + 1):
+            if along[order[k]] - along[order[k - 1]] > 1e-9:
+                area = spread(sums[k]) + spread(sums[n] - sums[k])
+                if area < best:
+                    angle, count, best = t, k, area
+    return angle, count, whole - best
