@@ -11,7 +11,7 @@ from annotated_types import Ge, Le, MinLen
 from tactile_graph.steps import Spread
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR
-from tactile_graph_likelihood.settings import ON_PAD, FootprintSettings, Load, Positive
+from tactile_graph_likelihood.settings import ON_PAD, FootprintSettings, Load
 from tactile_graph_likelihood.several.joint_posterior import JointProblem
 from tactile_graph_likelihood.several.pad import Expected, OnPad, likeliest
 from tactile_graph_likelihood.several.posteriors import posteriors
@@ -48,21 +48,20 @@ class Footprints(NamedTuple):
 
 @dataclass(frozen=True)
 class SeveralSettings(FootprintSettings):
-    """The settings of several outlines: their sizes have a range in any case.
+    """The settings of several outlines.
 
     Parameters
     ----------
     on_pad : "whole", "mostly" or "partly"
         Whether all outlines lie wholly on the pad, or their centres only; in nine of ten cases
         the whole.
-    smallest_cm, largest_cm : float
+    smallest_cm, largest_cm : float, optional
         Range of radii and half sides; of a regular polygon, what its sides keep from its centre
-        is no less.
+        is no less. If not given, 0.77 pitches and 0.58 of the pad's longer side: 1 and 12 cm on
+        the pad `thesis`.
     """
 
     on_pad: Literal["whole", "mostly", "partly"] = "whole"
-    smallest_cm: Positive = 1.0
-    largest_cm: Positive = 12.0
 
     def expected(self, kinds: Sequence[Kind], most: int, more: float) -> Expected:
         """Return what is expected on a pad."""

@@ -15,6 +15,7 @@ from tactile_graph_likelihood.geometry.outlines import (
     RECTANGLE,
     REGULAR,
     Values,
+    sizes,
     unknowns,
 )
 from tactile_graph_likelihood.several.joint_posterior import (
@@ -36,8 +37,8 @@ TRIES, HOPEFUL = 24, 4.0
 """Other starts of an outline that is drawn by itself, and how much less log evidence than the best
 a kind may have for them."""
 
-AROUND = np.array([0.25, 0.25, 0.2, 0.2, 0.15, 0.0])
-"""How far other starts lie off: lengths in cm, an angle in radians."""
+AROUND = np.array([0.19, 0.19, 0.15, 0.15, 0.15, 0.0])
+"""How far other starts lie off: lengths in pitches, an angle in radians."""
 
 TURNS = 4
 """Angles at which a regular polygon is begun with."""
@@ -56,7 +57,7 @@ class Allowed(NamedTuple):
     """What an outline may be.
 
     ``kinds`` and ``corners``, shape (K,), are as in `Outlines`; ``around``, shape (K, T, 6), is how
-    far other starts of each kind lie off the first.
+    far other starts of each kind lie off the first, lengths in pitches.
     """
 
     kinds: Places
@@ -162,9 +163,11 @@ def settled_as(
     n_tries = may_be.around.shape[1] if tries else 0
     starts, best = np.empty((TURNS + n_tries, WIDTH)), 0
     count = begun_like(kind, corners, other.kinds[0], other.corners[0], other.points[0], starts)
+    pitch, lengths = problem.grid[2], 2 + sizes(kind)
     for t in range(n_tries):
         for m in range(WIDTH):
-            starts[count + t, m] = starts[0, m] + may_be.around[j, t, m]
+            off = may_be.around[j, t, m] * (pitch if m < lengths else 1.0)
+            starts[count + t, m] = starts[0, m] + off
     count += n_tries
     if count > 1:
         best = likeliest_of(problem, kind, corners, starts[:count])

@@ -38,6 +38,10 @@ what lies there."""
 DOUBT = 4.0
 """The same between numbers of outlines, for the probability that is stated: searches miss some."""
 
+SMALLEST, LARGEST = 10.0 / 13.0, 15.0 / 26.0
+"""Least radius or half side in pitches, and the largest over the pad's longer side, where nobody
+says: 1 and 12 cm on the pad `thesis`, where all else was tuned."""
+
 LOADS = 1.5
 """Standard deviation of the logarithm of an outline's load, about the touched elements' median."""
 
@@ -50,8 +54,8 @@ class Expected:
     ----------
     kinds : list of (int, int)
         Kinds of outlines and their corners, all alike likely.
-    sizes_cm : (float, float)
-        Range of radii and half sides.
+    sizes_cm : (float, float), either None
+        Range of radii and half sides; as the pad is where not given.
     whole : float
         Probability that an outline lies on the pad whole.
     most : int
@@ -61,7 +65,7 @@ class Expected:
     """
 
     kinds: list[tuple[int, int]]
-    sizes_cm: tuple[float, float]
+    sizes_cm: tuple[float | None, float | None]
     whole: float
     most: int
     more: float
@@ -86,12 +90,22 @@ class Expected:
             corners.append(n)
         return Configuration(np.array(kinds), np.array(corners), points, 0.0)
 
+    def sizes_on(self, readings: Readings) -> tuple[float, float]:
+        """Return the range of radii and half sides on a pad, in cm."""
+        smallest, largest = self.sizes_cm
+        if smallest is None:
+            smallest = SMALLEST * float(readings.grid[2])
+            smallest = smallest if largest is None else min(smallest, 0.5 * largest)
+        if largest is None:
+            largest = max(LARGEST * max(readings.size_cm), 2.0 * smallest)
+        return smallest, largest
+
     def problem(self, readings: Readings, noise: Values) -> JointProblem:
         """Return the problem of a whole pad on which nothing lies yet."""
         grid, logs, states = readings.grid, readings.logs, readings.states
         states = np.where(states == OVER, ON, states).astype(np.uint8)
         prior = np.zeros(11)
-        prior[:2], prior[2:4], prior[4:6] = grid[:2], readings.size_cm, self.sizes_cm
+        prior[:2], prior[2:4], prior[4:6] = grid[:2], readings.size_cm, self.sizes_on(readings)
         prior[6:8] = self.whole, math.nan
         prior[9:] = float(np.median(logs[states == ON])) + LIGHT_EDGE, LOADS
         bare = np.zeros(states.shape)

@@ -23,8 +23,8 @@ from tactile_graph_likelihood.single.posterior import Posterior
 NEGLIGIBLE = 0.02
 """Probability over the likeliest outlines' below which others are left out."""
 
-SAME_CM = 0.15
-"""Distance of centres that are the same."""
+SAME = 0.115
+"""Distance of centres that are the same, in pitches."""
 
 
 class GoodnessOfLoad(NamedTuple):
@@ -245,9 +245,10 @@ def kinds_of(scene: Search, found: Configuration, k: int) -> Kinds:
 def spread_of_others(part: Found, one: Configuration, n: int) -> Values:
     """Return the covariance that other outlines of a part add to one of the likeliest."""
     spread, total, different = np.zeros((n, n)), 1.0, [part.outlines]
+    far_cm = SAME * float(part.scene.problem.grid[2])
     for log, other in part.others:
         chance = math.exp(min(log / TEMPER, 0.0))
-        if chance < NEGLIGIBLE or any(_are_same(other, it) for it in different):
+        if chance < NEGLIGIBLE or any(_are_same(other, it, far_cm) for it in different):
             continue
         different.append(other)
         far = np.hypot(*(other.points[:, :2] - one.points[0, :2]).T)
@@ -257,12 +258,12 @@ def spread_of_others(part: Found, one: Configuration, n: int) -> Values:
     return spread / total
 
 
-def _are_same(one: Configuration, other: Configuration) -> bool:
-    """Return whether outlines lie at about the same places."""
+def _are_same(one: Configuration, other: Configuration, far_cm: float) -> bool:
+    """Return whether outlines lie at the same places, but for a distance."""
     if one.count != other.count:
         return False
     off = one.points[:, None, :2] - other.points[None, :, :2]
-    return bool((np.abs(off).max(axis=2).min(axis=1) < SAME_CM).all())
+    return bool((np.abs(off).max(axis=2).min(axis=1) < far_cm).all())
 
 
 def _off(found: Configuration, one: Configuration, n: int) -> Values:

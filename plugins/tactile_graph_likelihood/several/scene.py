@@ -8,7 +8,9 @@ from functools import cache
 
 import numpy as np
 
-from tactile_graph_likelihood.geometry.outlines import Values, unknowns
+from tactile_graph_likelihood.geometry.outline_prior import HEIGHT, LARGEST, LEFT, SMALLEST, TOP
+from tactile_graph_likelihood.geometry.outline_prior import WIDTH as ACROSS
+from tactile_graph_likelihood.geometry.outlines import Values, sizes, unknowns
 from tactile_graph_likelihood.several.joint_posterior import (
     WIDTH,
     JointProblem,
@@ -122,11 +124,12 @@ class Scene:
     def sampled(self, found: Configuration, k: int) -> Sampled:
         """Return the posterior of one outline beside the others, and its evidence.
 
-        Where hardly any point is possible, it is that of the information at the mode.
+        Where hardly any point is possible, it is that of the information at the mode, within what
+        is possible of each number.
         """
         beside, outline = self.beside(found, k), found.only(k).outlines
         matrix = np.empty((WIDTH, WIDTH))
-        settle.call(beside, outline, 0, 0, 0.0, matrix)
+        at_mode = settle.call(beside, outline, 0, 0, 0.0, matrix)
         n = unknowns.call(int(found.kinds[k]), int(found.corners[k])) + 1
         plan = Plan(_table(n), BLOCK, WORTH)
         points, weights = np.empty((POINTS, n)), np.empty(POINTS)
@@ -137,8 +140,20 @@ class Scene:
         if equal < FEWEST_POINTS:
             root = np.linalg.cholesky(covariance)
             around = found.points[k, :n] + plan.table[:BLOCK] @ root.T
-            return Sampled(around, np.full(BLOCK, 1.0 / BLOCK), evidence, float(BLOCK))
+            low, high = self._bounds(int(found.kinds[k]), n)
+            evidence = at_mode if evidence == -math.inf else evidence
+            weights = np.full(BLOCK, 1.0 / BLOCK)
+            return Sampled(np.clip(around, low, high), weights, evidence, float(BLOCK))
         return Sampled(points[:used], weights[:used], evidence, equal)
+
+    def _bounds(self, kind: int, n: int) -> tuple[Values, Values]:
+        """Return the least and the most that an outline's numbers may be."""
+        prior, low, high = self.problem.prior, np.full(n, -np.inf), np.full(n, np.inf)
+        low[:2] = prior[[LEFT, TOP]]
+        high[:2] = low[:2] + prior[[ACROSS, HEIGHT]]
+        its = slice(2, 2 + sizes.call(kind))
+        low[its], high[its] = prior[SMALLEST], prior[LARGEST]
+        return low, high
 
 
 def area_of(found: Configuration, k: int = 0) -> float:

@@ -120,3 +120,39 @@ def test_the_benchmarks_outlines_touch_or_lie_apart():
         (frame,) = frames_of("noise 0", 2, touching, Asked(1, 9))
         one, other = (t.shape for t in frame.truth)
         assert least <= apart_cm(one, other) <= most
+
+
+@pytest.mark.parametrize("pitch_cm", [0.1, 13.0])
+def test_a_pad_of_another_pitch_gets_the_same_answer_in_pitches(pitch_cm):
+    for frame in frames_of("noise 1.6 mV", 3, False, Asked(2, 8)):
+        values = np.array(frame.image.values)
+        one, other = (LocateObjects()(Image(values, (pitch, pitch))) for pitch in (1.0, pitch_cm))
+        assert (one.count, one.fits) == (other.count, other.fits)
+        for its, found in zip(one.shapes, other.shapes, strict=True):
+            assert type(its) is type(found)
+            assert found.x_cm / pitch_cm == pytest.approx(its.x_cm, abs=1e-6)
+            assert found.area_cm2 / pitch_cm**2 == pytest.approx(its.area_cm2, rel=1e-6)
+
+
+def test_objects_of_any_size_are_found_on_a_large_pad():
+    rng, side = np.random.default_rng(3), np.arange(96) + 0.5
+    x, y = side[None, :], side[:, None]
+    lain = (np.hypot(x - 30.0, y - 35.0) < 20.0) | (np.hypot(x - 70.0, y - 70.0) < 12.0)
+    values = 100.0 * lain * np.exp(rng.normal(0.0, 0.25, lain.shape)) + rng.normal(
+        0, 0.3, lain.shape
+    )
+    found = LocateObjects()(Image(values, (1.0, 1.0)))
+    places = sorted((its.x_cm, its.y_cm, np.sqrt(its.area_cm2 / np.pi)) for its in found.shapes)
+    assert np.array(places) == pytest.approx(np.array([[30, 35, 20], [70, 70, 12]]), abs=0.5)
+
+
+@pytest.mark.parametrize("shape", [(1, 30), (30, 1), (2, 2), (2, 16), (16, 2)])
+def test_a_narrow_pad_answers_whichever_elements_are_touched(shape):
+    rng = np.random.default_rng(1)
+    for n in range(12):
+        values = rng.normal(0.0, 0.5, shape)
+        values.flat[rng.integers(0, values.size, 1 + n % 2)] += 100.0
+        found = LocateObjects()(Image(values, (1.0, 1.0)))
+        for its in found.shapes:
+            assert -0.5 <= its.x_cm <= shape[1] + 0.5
+            assert -0.5 <= its.y_cm <= shape[0] + 0.5
