@@ -37,7 +37,6 @@ from tactile_graph_likelihood.single.element_terms import (
     on_level,
 )
 from tactile_graph_likelihood.single.information import DENSITY, SLIVER, Information
-from tactile_graph_likelihood.single.problem import Places
 
 STAGES = (
     (4.0, 1.5, 2.0, 0.0),
@@ -77,21 +76,14 @@ that is held against sketches."""
 class Brought(NamedTuple):
     """What each sketch brings to an element.
 
-    Coverage, shape (K,); its slopes where it is between 0 and 1, shape (K, 5); the load of a
-    covered element, shape (K,).
+    Coverage, shape (K,); its slopes where it is between 0 and 1, shape (K, 6), the last 0; the load
+    of a covered element, shape (K,); room for the slopes of ln load, shape (K, 6).
     """
 
     own: Values
     rise: Values
     scale: Values
-
-
-class Slopes(NamedTuple):
-    """Slopes at an element: of ln load, of coverage, and of which number; all shape (6 K,)."""
-
     along: Values
-    tight: Values
-    used: Places
 
 
 @compiled_as_is
@@ -202,9 +194,8 @@ def log_posterior(problem: JointProblem, points: Values, half: float, out: Infor
     total, level = log_prior(problem, points, out), on_level(noise)
     box = windows(grid, points, half, states.shape)
     frame, scale = np.empty((count, 8)), np.empty(count)
-    own, rise, size = np.empty(count), np.zeros((count, 5)), count * WIDTH
-    brought = Brought(own, rise, scale)
-    work = Slopes(np.empty(size), np.empty(size), np.empty(size, np.int64))
+    own, rise = np.empty(count), np.zeros((count, WIDTH))
+    brought = Brought(own, rise, scale, np.zeros((count, WIDTH)))
     for k in range(count):
         frame_of(points[k], frame[k])
         scale[k] = math.exp(points[k, 5])
@@ -239,7 +230,7 @@ def log_posterior(problem: JointProblem, points: Values, half: float, out: Infor
             if over > 0.0:
                 push = 1.0 / (OVERLAP * OVERLAP)
                 total -= 0.5 * push * (over * over - max(before, 0.0) ** 2)
-            add_element(brought, (load, here[1], here[2], over, push), work, out)
+            add_element(brought, (load, here[1], here[2], over, push), out)
     for x in range(out.slope.shape[0]):
         for y in range(x):
             out.matrix[y, x] = out.matrix[x, y]
@@ -247,29 +238,39 @@ def log_posterior(problem: JointProblem, points: Values, half: float, out: Infor
 
 
 @compiled_as_is
-def add_element(brought: Brought, said: Said, work: Slopes, out: Information) -> None:
+def add_element(brought: Brought, said: Said, out: Information) -> None:
     """Add an element's part to slope and to the information's lower half."""
-    own, rise, scale = brought
+    own, rise, scale, along = brought
     load, score, weight, over, push = said
-    along, tight, used = work
-    n = 0
     for k in range(own.shape[0]):
         if own[k] <= 0.0:
             continue
-        if own[k] < 1.0:
-            floor = max(load, SLIVER * scale[k])
+        per_load, x = scale[k] / max(load, SLIVER * scale[k]), k * WIDTH
+        for m in range(5):
+            along[k, m] = per_load * rise[k, m] if own[k] < 1.0 else 0.0
+        along[k, 5] = scale[k] * own[k] / load
+        for m in range(WIDTH):
+            out.slope[x + m] += score * along[k, m]
+        for j in range(k + 1):
+            if own[j] > 0.0:
+                _add_products(weight, along[k], along[j], out.matrix, x, j * WIDTH)
+        if push > 0.0 and own[k] < 1.0:
             for m in range(5):
-                along[n], tight[n] = scale[k] * rise[k, m] / floor, rise[k, m]
-                used[n] = k * WIDTH + m
-                n += 1
-        along[n], tight[n], used[n] = scale[k] * own[k] / load, 0.0, k * WIDTH + 5
-        n += 1
-    for a in range(n):
-        x = used[a]
-        out.slope[x] += score * along[a] - push * over * tight[a]
-        for b in range(a + 1):
-            both = weight * along[a] * along[b] + push * tight[a] * tight[b]
-            out.matrix[x, used[b]] += both
+                out.slope[x + m] -= push * over * rise[k, m]
+            for j in range(k + 1):
+                if 0.0 < own[j] < 1.0:
+                    _add_products(push, rise[k], rise[j], out.matrix, x, j * WIDTH)
+
+
+@compiled_as_is
+def _add_products(
+    factor: float, one: Values, other: Values, matrix: Values, row: int, column: int
+) -> None:
+    """Add all products of two sketches' slopes to their block of the information."""
+    for a in range(WIDTH):
+        scaled = factor * one[a]
+        for b in range(WIDTH):
+            matrix[row + a, column + b] += scaled * other[b]
 
 
 @compiled_as_is
