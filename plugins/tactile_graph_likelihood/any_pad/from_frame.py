@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph_likelihood.any_pad.turn_on import (
@@ -13,13 +14,17 @@ from tactile_graph_likelihood.any_pad.turn_on import (
 )
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
 from tactile_graph_likelihood.single.changed import changed
-from tactile_graph_likelihood.single.element_terms import ON, OVER, States
+from tactile_graph_likelihood.single.element_terms import CONTRAST, ON, OVER, States
 from tactile_graph_likelihood.single.model import Model
-from tactile_graph_likelihood.single.noise import Noise
+from tactile_graph_likelihood.single.noise import SPREADS, Noise
 from tactile_graph_likelihood.single.readings import Readings
 
 LAW = 0.35
 """Of ln sigma that is not as told, the share that is the law's exponent, not the gains'."""
+
+LAWLESS, LAWLESS_STD = 0.25, 0.45
+"""The same of readings that no law is told of, where they scatter less than told, and the standard
+deviation of that share: an even pad, or one whose readings go with a root of the load."""
 
 EVENED, EVENED_STD = -0.3, 0.17
 """What foam, which spreads loads that are uneven, adds to ln sigma, and its deviation."""
@@ -51,8 +56,19 @@ LEAST_ALIKE, MOST_ALIKE = 0.03, 0.95
 """Correlation of neighbours below which it is none, and to which it is held."""
 
 
+class Contrast(NamedTuple):
+    """The power of coverage that readings go with, and its standard deviation."""
+
+    power: float
+    std: float = SPREADS[CONTRAST]
+
+
+AS_LOADS = Contrast(1.0)
+"""Of readings that are loads."""
+
+
 def learned(
-    told: Noise, scatter: Values, touched: int, strays: float, contrast: float = 1.0,
+    told: Noise, scatter: Values, touched: int, strays: float, contrast: Contrast = AS_LOADS,
     shared: float = 1.0,
 ) -> Noise:  # fmt: skip
     """Return the noise that a fit has found.
@@ -64,16 +80,18 @@ def learned(
         Ln sigma and the voids' log odds.
     touched : int
         Readings that show.
-    strays, contrast : float
+    strays : float
+    contrast : Contrast
     shared : float
         By how many times less elements are worth, as neighbours share their gains.
     """
     sigma = _freed(float(scatter[0]), touched) * math.sqrt(shared)
     voids = 1.0 / (1.0 + math.exp(-scatter[1]))
-    return changed(told, sigma=sigma, voids=voids, strays=strays, contrast=contrast)
+    power, std = contrast
+    return changed(told, sigma=sigma, voids=voids, strays=strays, contrast=power, contrast_std=std)
 
 
-def contrast_of(told: Noise, log_sigma: float, readings: Readings, law: float = LAW) -> float:
+def contrast_of(told: Noise, log_sigma: float, readings: Readings, law: float = LAW) -> Contrast:
     """Return the law's exponent over the told one.
 
     Parameters
@@ -90,20 +108,24 @@ def contrast_of(told: Noise, log_sigma: float, readings: Readings, law: float = 
     -----
     Readings that scatter more or less than told may do so since gains do, or since the law's
     exponent is another. Where readings begin tells which (`contrast_by`), if that is seen: by the
-    told law or, as far as its bend is improbable, by that without.
+    told law or, as far as its bend is improbable, by that without. Readings that no law is told of
+    and that scatter less may be those of an even pad, or go with a root of the load: nobody knows.
     """
     if law <= 0.0:
-        return 1.0
+        return AS_LOADS
     other = math.log(_freed(log_sigma, readings.touched) / told.sigma)
+    turn_on = readings.turn_on
+    if turn_on is None and other < 0.0:
+        return Contrast(1.0 + LAWLESS * other, math.hypot(SPREADS[CONTRAST], LAWLESS_STD * other))
     if (edge := edge_of(readings)) is not None:
-        return contrast_by(other, edge, readings.touched)
-    unseen, turn_on = 1.0 + law * other, readings.turn_on
+        return Contrast(contrast_by(other, edge, readings.touched))
+    unseen = 1.0 + law * other
     if turn_on is None or turn_on.chance >= 1.0:
-        return unseen
+        return Contrast(unseen)
     if (edge := edge_of(straightened(readings, 1.0))) is None:
-        return unseen
+        return Contrast(unseen)
     straight = contrast_by(other, edge, readings.touched)
-    return turn_on.chance * unseen + (1.0 - turn_on.chance) * straight
+    return Contrast(turn_on.chance * unseen + (1.0 - turn_on.chance) * straight)
 
 
 def evened_by_foam(by_foam: float, by_face: float, touched: int) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.from_frame import (
+    AS_LOADS,
     LAW,
     contrast_of,
     evened_by_foam,
@@ -407,7 +408,7 @@ class AnyPad:
         """Return the slope of what the fit's own scatter says of the law's exponent."""
         pull = np.zeros(self._count + 1)
         contrast = contrast_of(self.told.noise, float(top.mode.p[-2]), readings, self.law)
-        pull[-1] = (contrast - self.told.noise.contrast) / SPREADS[CONTRAST] ** 2
+        pull[-1] = (contrast.power - self.told.noise.contrast) / SPREADS[CONTRAST] ** 2
         return pull
 
     def _looked_at(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
@@ -441,7 +442,7 @@ class AnyPad:
         shared = variance_inflation(top.fit.neighbours, readings.touched)
         large = readings.states.size > LARGE_PAD
         strays = strays_beyond(self.told, readings, point)
-        contrast, by_law = 1.0, part == EVEN and not large
+        contrast, by_law = AS_LOADS, part == EVEN and not large
         if by_law:
             contrast = contrast_of(self.told.noise, float(point[-2]), readings, self.law)
         noise = learned(self.told.noise, point[-2:], readings.touched, strays, contrast, shared)

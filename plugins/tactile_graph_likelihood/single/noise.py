@@ -79,6 +79,8 @@ class Noise:
         has none.
     contrast : float
         Power of an element's coverage that its reading goes with: 1 where readings are loads.
+    contrast_std : float
+        Its standard deviation beforehand, where it is estimated.
     """
 
     sigma: float = 0.5
@@ -88,6 +90,7 @@ class Noise:
     foam_cm: float = 0.0
     estimated: tuple[str, ...] = ()
     contrast: float = 1.0
+    contrast_std: float = SPREADS[CONTRAST]
 
     def vector(self, pitch_cm: float) -> Values:
         """Return the numbers as the kernels take them, shape (9,)."""
@@ -115,7 +118,7 @@ class Noise:
             middle = numbers[place]
             if place < FALL:
                 middle = math.log(middle / (1.0 - middle) if place == VOIDS else middle)
-            guess += [middle, SPREADS[place]]
+            guess += [middle, self.contrast_std if place == CONTRAST else SPREADS[place]]
         return NoiseTaken(
             np.array(numbers),
             np.array(places, dtype=np.int64),

@@ -296,6 +296,25 @@ def test_readings_need_no_quantity_and_no_scale():
 
 
 @pytest.mark.slow
+def test_an_even_pad_that_reads_in_proportion_is_not_taken_for_a_law_of_its_own():
+    """Where gains scatter by a tenth and nobody says so, radii are right and regions hold them."""
+    rng, at = np.random.default_rng(12), (np.arange(12 * 9) + 0.5) / 9.0
+    offs, held = [], []
+    for _ in range(40):
+        radius = rng.uniform(2.2, 4.0)
+        x, y = rng.uniform(radius, 12.0 - radius, 2)
+        inside = np.hypot(at[None, :] - x, at[:, None] - y) < radius
+        covered = inside.reshape(12, 9, 12, 9).mean((1, 3))
+        values = 100.0 * covered * np.exp(0.1 * rng.standard_normal((12, 12)))
+        values += 0.5 * rng.standard_normal((12, 12))
+        found = LocateDisc()(Image(values, (1.0, 1.0)))
+        offs.append(found.radius_cm - radius)
+        held.append(found.posterior.contains(Circle(x, y, radius)))
+    assert abs(np.mean(offs)) < 0.05
+    assert np.mean(held) > 0.5
+
+
+@pytest.mark.slow
 @plain
 def test_cells_that_are_nearly_square_lie_where_they_lie():
     rng = np.random.default_rng(8)

@@ -17,8 +17,8 @@ from tactile_graph_likelihood.any_pad.turn_on import (
     straightened,
     unbent,
 )
-from tactile_graph_likelihood.single.element_terms import ON, UNDER
-from tactile_graph_likelihood.single.noise import Noise
+from tactile_graph_likelihood.single.element_terms import CONTRAST, ON, UNDER
+from tactile_graph_likelihood.single.noise import SPREADS, Noise
 from tactile_graph_pads.pad import Pad, load_pad
 
 PAD = load_pad("thesis")
@@ -117,11 +117,22 @@ def test_a_bend_in_doubt_counts_for_as_much_as_it_is_probable() -> None:
     """Readings go on below the told turn-on: by a law without a bend they tell its exponent."""
     bent, noise, log_sigma = observed(frame(5.0), PAD), Noise(), math.log(0.7)
     told, straight, partly = (
-        contrast_of(noise, log_sigma, straightened(bent, share) if share else bent)
+        contrast_of(noise, log_sigma, straightened(bent, share) if share else bent).power
         for share in (0.0, 1.0, 0.75)
     )
     assert 1.0 < told < straight < 1.5
     assert partly == pytest.approx(0.25 * told + 0.75 * straight)
+
+
+def test_readings_without_a_law_that_scatter_little_leave_its_exponent_open() -> None:
+    """An even pad, or a law that draws loads together: only their quantity says which."""
+    noise, readings = Noise(), observed(frame(5.0), PAD)
+    lawless = readings._replace(turn_on=None)
+    few, many = (contrast_of(noise, math.log(x * noise.sigma), lawless) for x in (0.3, 1.5))
+    assert 0.5 < few.power < 1.0 < many.power
+    assert few.std > 0.4
+    assert many.std == SPREADS[CONTRAST]
+    assert contrast_of(noise, math.log(0.3 * noise.sigma), readings).std == SPREADS[CONTRAST]
 
 
 def test_what_cannot_be_an_edge_is_no_error() -> None:
