@@ -29,10 +29,11 @@ def new(name: str, kind: str, step: str | None, into: Path) -> None:
     """
     import shlex
 
-    from tactile_graph.cli.package.making import make_package, names_of, words_of
+    from tactile_graph.cli.package.making import make_package, words_of
+    from tactile_graph.cli.package.names import names_of
     from tactile_graph.cli.say import say
 
-    names = names_of(name, step)
+    names = names_of(name, step, kind)
     folder = into / name
     files = make_package(names, kind, folder)
     say(f"{folder}: a {kind}, {len(files)} files")
