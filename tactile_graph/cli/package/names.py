@@ -47,9 +47,9 @@ def names_of(project: str, step: str | None, kind: str) -> Names:
             "name, the first and last a letter or digit"
         )
     package = re.sub(r"[-_.]+", "_", project).lower()
-    told = _no_name("package", package, LONGEST_PACKAGE)
-    if told or _is_installed(project, package):
-        raise UsageError(told or f"{_is_installed(project, package)}; choose another name")
+    told = _no_name("package", package, LONGEST_PACKAGE) or _is_installed(project, package)
+    if told:
+        raise UsageError(told)
     names = Names(project, package, OWN.sub("", package) if step is None else step)
     told = _no_step(names.step, kind)
     if told:
@@ -70,14 +70,17 @@ def _no_name(what: str, name: str, most: int) -> str:
 
 
 def _is_installed(project: str, package: str) -> str:
-    """Return what is installed under a package's names; "" if nothing is."""
+    """Return that something is installed under a package's names; "" if nothing is."""
     if package in sys.stdlib_module_names or find_spec(package) is not None:
-        return f"there is a module {package!r} already"
+        return f"there is a module {package!r} already; choose another name"
     try:
         there = distribution(project)
     except PackageNotFoundError:
         return ""
-    return f"package {there.name} is installed already, and this one would take its place"
+    return (
+        f"package {there.name} is installed already, and this one would take its place; "
+        "choose another name"
+    )
 
 
 def _no_step(name: str, kind: str) -> str:
