@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from importlib.metadata import version
 from pathlib import Path
@@ -40,7 +41,7 @@ def make_package(names: Names, kind: str, folder: Path) -> list[Path]:
     UsageError
         If the folder is there already, or cannot be written.
     """
-    if folder.exists():
+    if os.path.lexists(folder):
         raise UsageError(f"{folder} is there already; choose another name, or --into a folder")
     part = folder.with_name(f".{folder.name}.part")
     with uninterrupted(), said(folder):
@@ -52,6 +53,11 @@ def make_package(names: Names, kind: str, folder: Path) -> list[Path]:
             shutil.rmtree(part, ignore_errors=True)
             raise
     return sorted(path.relative_to(part) for path in written)
+
+
+def repository_around(folder: Path) -> Path | None:
+    """Return the git repository that a package's folder lies in; None if it lies in none."""
+    return next((p for p in folder.resolve().parents if (p / ".git").exists()), None)
 
 
 def templates_of(kind: str) -> list[Path]:

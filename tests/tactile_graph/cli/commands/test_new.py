@@ -7,6 +7,7 @@ import subprocess
 import sys
 from importlib.util import find_spec
 from pathlib import Path
+from shutil import which
 from typing import NamedTuple
 
 import pytest
@@ -199,6 +200,42 @@ def test_a_folder_that_is_there_is_left_alone(tmp_path: Path) -> None:
     assert got.exit_code == 2
     assert "mine is there already; choose another name, or --into a folder" in got.output
     assert not list((tmp_path / "mine").iterdir())
+
+
+def test_a_link_that_leads_nowhere_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "mine").symlink_to("nowhere")
+    assert "mine is there already; choose another name" in made(tmp_path, "mine").output
+    assert (tmp_path / "mine").is_symlink()
+
+
+def test_a_folder_that_cannot_be_written_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "mkdir", refuse)
+    got = made(tmp_path, "mine")
+    assert got.exit_code == 2
+    assert "mine: cannot be written: Permission denied" in got.output
+
+
+def test_within_a_repository_it_says_where_the_workflow_runs(tmp_path: Path) -> None:
+    assert "git repository" not in made(tmp_path, "mine").output
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "plugins").mkdir()
+    said = f"It lies in the git repository {tmp_path.resolve()}: GitHub runs its workflow only"
+    assert said in made(tmp_path / "plugins", "mine").output
+
+
+@pytest.mark.skipif(not which("git"), reason="git is missing")
+def test_nothing_of_a_package_is_ignored_by_git_whatever_it_is_called(tmp_path: Path) -> None:
+    assert made(tmp_path, "dist").exit_code == 0
+    subprocess.run(["git", "init", "-q", str(tmp_path)], check=True)
+    words = ["git", "status", "--short", "--ignored", "--untracked-files=all"]
+    got = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert "dist/src/dist/__init__.py" in got.stdout
+    assert "!!" not in got.stdout
 
 
 def test_the_step_is_called_after_the_package_without_what_all_begin_with() -> None:
