@@ -43,6 +43,12 @@ class StepReport:
         """Return a line for each broken promise."""
         return [f"step {self.step!r}: {b}" for b in self.broken]
 
+    def __str__(self) -> str:
+        if self.untried:
+            return f"step {self.step!r} was not tried: {self.untried}"
+        kept = f"step {self.step!r} keeps its promises: {self.n_values} of {self.n_cases} cases"
+        return "\n".join(self.lines()) or f"{kept} gave a value"
+
 
 class BrokenPromises(AssertionError):  # noqa: N818 -- what it tells
     """The promises a step breaks, one a line."""

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import re
 import shlex
+import subprocess
 import sys
+from importlib.util import find_spec
 from inspect import signature
 from itertools import takewhile
 from pathlib import Path
@@ -26,7 +28,7 @@ from tactile_graph.pipeline.declaration import NODE_KEYS, TOP_KEYS
 from tactile_graph.plugins.core import tactile_graph_quantities
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.signature import Kind, read_signature
-from tactile_graph.testing import BrokenPromises
+from tactile_graph.testing import BrokenPromises, check_step
 from tactile_graph_pads.circuits import Circuit, Divider, Feedback, Floating
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import load_pad
@@ -194,6 +196,14 @@ def test_the_plugin_shown_is_one() -> None:
     assert set(spaces[4]["alone"].times_us) < set(spaces[4]["both"].times_us)
 
 
+def test_the_step_shown_keeps_the_promises_of_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    (code,) = (block for block in fenced("plugins", "python") if "def part(" in block)
+    shown = ModuleType("shown_step")
+    monkeypatch.setitem(sys.modules, "shown_step", shown)
+    exec(compile(code, "plugins.md", "exec"), vars(shown))
+    check_step(shown.part)
+
+
 @pytest.mark.slow
 def test_the_tests_shown_for_plugins_pass(
     request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
@@ -219,6 +229,21 @@ def test_the_stacked_form_shown_answers_as_its_step_does(monkeypatch: pytest.Mon
     )
     with pytest.raises(BrokenPromises):
         shown.check_step(shown.spread)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not find_spec("mypy"), reason="mypy is missing")
+def test_the_steps_shown_have_the_types_that_a_new_package_checks(tmp_path: Path) -> None:
+    shown = [code for code in fenced("plugins", "python") if "def test_" not in code]
+    shown.append("\n".join(fenced("how-to/write-a-plugin", "python")))
+    files = [tmp_path / f"shown_{k}.py" for k in range(len(shown))]
+    for file, code in zip(files, shown, strict=True):
+        file.write_text(code)
+    got = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", *files],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert got.returncode == 0, got.stdout
 
 
 @pytest.mark.slow  # takes seconds

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 import shlex
+import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from click.testing import CliRunner
 
 from tactile_graph import load, loads
 from tactile_graph.cli import cli
+from tactile_graph.testing import check_step
 
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
@@ -55,3 +58,10 @@ def test_the_python_shown_runs(capsys: pytest.CaptureFixture[str]) -> None:
     for code in re.findall(r"^```python\n(.*?)^```", README.read_text("utf-8"), re.M | re.S):
         exec(compile(code, "README.md", "exec"), {"__name__": "readme"})
     assert "FittedCircle" in capsys.readouterr().out
+
+
+def test_the_step_shown_keeps_the_promises_of_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = ModuleType("readme")
+    monkeypatch.setitem(sys.modules, "readme", shown)
+    exec(compile(block("python"), "README.md", "exec"), vars(shown))
+    check_step(shown.brighter)

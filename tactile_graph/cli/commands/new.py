@@ -29,15 +29,22 @@ def new(name: str, kind: str, step: str | None, into: Path) -> None:
     """
     import shlex
 
-    from tactile_graph.cli.package.making import make_package, names_of, words_of
+    from tactile_graph.cli.package.making import make_package, repository_around, words_of
+    from tactile_graph.cli.package.names import names_of
     from tactile_graph.cli.say import say
 
-    names = names_of(name, step)
+    names = names_of(name, step, kind)
     folder = into / name
     files = make_package(names, kind, folder)
     say(f"{folder}: a {kind}, {len(files)} files")
     for path in files:
         say(f"  {path}")
+    around = repository_around(folder)
+    if around is not None:
+        say(
+            f"It lies in the git repository {around}: GitHub runs its workflow only from the "
+            ".github/workflows of that repository, or once the package is one of its own."
+        )
     say("Next:")
     for command in (
         f"cd {shlex.quote(str(folder))}",

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import keyword
-import re
+import os
 import shutil
-import sys
 from importlib.metadata import version
-from importlib.util import find_spec
 from pathlib import Path
 from string import Template
 from typing import NamedTuple
@@ -15,12 +12,9 @@ from typing import NamedTuple
 from tactile_graph.cli.package.kinds import KINDS
 from tactile_graph.errors import UsageError
 from tactile_graph.files import said, uninterrupted
-from tactile_graph.plugins import registry
 
 TEMPLATES = Path(__file__).with_name("templates")
 SUFFIX = ".template"
-OWN = re.compile(r"tactile[-_.]graph[-_.]+(?=.)")
-"""What a package's name may begin with and its step's need not."""
 
 
 class Names(NamedTuple):
@@ -39,45 +33,6 @@ class Names(NamedTuple):
         return "".join(part.capitalize() for part in self.step.split("_"))
 
 
-def names_of(project: str, step: str | None) -> Names:
-    """Return the names of a package and its step, or say which cannot be.
-
-    Parameters
-    ----------
-    project : str
-        As the user gave it: letters, digits, ``-``, ``_`` and ``.``.
-    step : str, optional
-        By default the project's name without ``tactile-graph-`` before it.
-
-    Raises
-    ------
-    UsageError
-        If a name is no name, or is taken.
-    """
-    if not re.fullmatch(r"[A-Za-z0-9]([A-Za-z0-9._-]*[A-Za-z0-9])?", project):
-        raise UsageError(
-            f"a package cannot be called {project!r}: letters, digits, '-', '_' and '.' make its "
-            "name, the first and last a letter or digit"
-        )
-    package = re.sub(r"[-_.]+", "_", project).lower()
-    step = step or OWN.sub("", package)
-    for what, name in (("package", package), ("step", step)):
-        if not name.isidentifier() or keyword.iskeyword(name) or name != name.lower():
-            raise UsageError(
-                f"a {what} cannot be called {name!r}: small letters, digits and '_' make its name, "
-                "the first a letter, and no word of Python's own"
-            )
-    for what, name, most in (("package", package, 38), ("step", step, 24)):
-        if len(name) > most:
-            raise UsageError(f"a {what}'s name has at most {most} letters, got {len(name)}: {name}")
-    if package in sys.stdlib_module_names or find_spec(package) is not None:
-        raise UsageError(f"there is a module {package!r} already; choose another name")
-    if registry.installed().has("steps", step):
-        label = registry.installed().offer("steps", step).plugin.label
-        raise UsageError(f"{label} has a step {step!r} already; name another by --step")
-    return Names(project, package, step)
-
-
 def make_package(names: Names, kind: str, folder: Path) -> list[Path]:
     """Write the package, and return its files, relative to its folder.
 
@@ -86,23 +41,29 @@ def make_package(names: Names, kind: str, folder: Path) -> list[Path]:
     UsageError
         If the folder is there already, or cannot be written.
     """
-    if folder.exists():
+    if os.path.lexists(folder):
         raise UsageError(f"{folder} is there already; choose another name, or --into a folder")
     part = folder.with_name(f".{folder.name}.part")
     with uninterrupted(), said(folder):
         shutil.rmtree(part, ignore_errors=True)
         try:
-            written = [
-                _write(template, part, names, kind)
-                for room in ("common", kind)
-                for template in sorted((TEMPLATES / room).rglob("*"))
-                if template.is_file()
-            ]
+            written = [_write(template, part, names, kind) for template in templates_of(kind)]
             part.rename(folder)
         except BaseException:
             shutil.rmtree(part, ignore_errors=True)
             raise
     return sorted(path.relative_to(part) for path in written)
+
+
+def repository_around(folder: Path) -> Path | None:
+    """Return the git repository that a package's folder lies in; None if it lies in none."""
+    return next((p for p in folder.resolve().parents if (p / ".git").exists()), None)
+
+
+def templates_of(kind: str) -> list[Path]:
+    """Return the templates of a kind: those of every package, then its own."""
+    rooms = (TEMPLATES / "common", TEMPLATES / kind)
+    return [path for room in rooms for path in sorted(room.rglob("*")) if path.is_file()]
 
 
 def words_of(names: Names, kind: str) -> dict[str, str]:

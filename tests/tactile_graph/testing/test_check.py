@@ -241,6 +241,20 @@ def test_a_signature_that_does_not_hold_together_is_told() -> None:
     assert line == "step 'bare': its signature: parameter 'level' has no annotation"
 
 
+def test_a_report_is_shown_as_lines() -> None:
+    def unlike(image: Image) -> float:
+        return math.nan
+
+    report = examine_step(unlike)
+    assert str(report).splitlines() == report.lines()
+    kept = examine_step(halved)
+    told = f"{kept.n_values} of {kept.n_cases} cases gave a value"
+    assert str(kept) == f"step 'halved' keeps its promises: {told}"
+    untried = str(examine_step("simplify_polygon"))
+    assert untried.startswith("step 'simplify_polygon' was not tried: ")
+    assert "must be given" in untried
+
+
 # -- what cannot be tried --------------------------------------------------------------------
 
 
