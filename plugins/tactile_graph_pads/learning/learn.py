@@ -234,7 +234,7 @@ def _of_objects(
     rest, seen = known.rest, _pressed(objects, bare, shows_from, known)
     if not seen.gains.stand_out:
         notes.append(_no_gains(seen.gains, seen.placements))
-    curve = force_curve(seen.evened[:, seen.good], objects.weight_g, shows_from)
+    curve = force_curve(seen.evened.reshape(len(objects), -1), objects.weight_g, shows_from)
     places = _places(objects)
     level, right = _level(seen.evened, places, shows_from)
     learned = replace(
@@ -394,12 +394,20 @@ def _no_gains(found: Gains, n_placements: int) -> str:
 
 
 def _weights_note(objects: Stack, curve: ForceCurve | None) -> list[str]:
-    if curve is not None:
-        return []
-    n = int(np.isfinite(objects.weight_g).sum())
-    if n == 0:
+    known = np.isfinite(objects.weight_g)
+    n = int(known.sum())
+    if curve is None and n == 0:
         return ["No weights are known: no law from readings to grams."]
-    return [f"{n} known weights are too few or too much alike: no law from readings to grams."]
+    if curve is None:
+        return [f"{n} known weights are too few or too much alike: no law from readings to grams."]
+    n_loaded = int((known & (objects.weight_g > 0.0)).sum())
+    n_unseen = n_loaded - len(curve.true_g)
+    if n_unseen == 0:
+        return []
+    return [
+        f"In {n_unseen} of {n_loaded} frames of known weight no reading is more than noise: they "
+        "weigh 0 g, and do not count among the held-out weights."
+    ]
 
 
 def _turn_on_note(found: TurnOn | None) -> list[str]:
