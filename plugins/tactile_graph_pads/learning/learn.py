@@ -48,6 +48,18 @@ DRIFTS = 3.0
 """Noises that the empty pad may move before it is said."""
 
 
+LAWFUL = ("volt", "siemens")
+"""Quantities of readings that steps turn into loads by a law, whose unevenness is another's."""
+
+
+class Uneven(NamedTuple):
+    """How unevenly loads come down, as `tactile_graph_pads.unevenness.Unevenness` names it."""
+
+    sigma: float
+    fixed: float
+    voids: float
+
+
 @dataclass(frozen=True, eq=False)
 class LearnedPad:
     """A pad's record, and what it was made from, for whoever judges it.
@@ -84,6 +96,15 @@ class LearnedPad:
     place: LearnedPlace | None = None
     counted_right: float | None = None
     notes: tuple[str, ...] = ()
+
+    @property
+    def unevenness(self) -> Uneven | None:
+        """Of the loads that steps see; None where it is not known, or only that of readings."""
+        if self.gains is None or self.silence is None or self.loads in LAWFUL:
+            return None
+        if not np.isfinite(self.gains.sigma):
+            return None
+        return Uneven(self.gains.sigma, self.gains.fixed, self.silence.voids)
 
 
 def learn_pad(empty: Stack | None, objects: Stack | None, base: Pad | None = None) -> LearnedPad:
@@ -246,6 +267,7 @@ def _of_objects(
     )
     place = _place(objects, seen, places, learned.touched_from, notes)
     notes += _weights_note(objects, curve) + _turn_on_note(seen.turn_on)
+    notes += _unevenness_note(seen.gains, known.loads)
     return LearnedPad(
         learned, _elements(rest, seen.silence, seen.gains.gain), rest, seen.silence, seen.gains,
         known.loads, seen.under, curve, place, right, tuple(notes),
@@ -413,3 +435,14 @@ def _weights_note(objects: Stack, curve: ForceCurve | None) -> list[str]:
 def _turn_on_note(found: TurnOn | None) -> list[str]:
     none = "No turn-on is seen: readings begin in the noise, or come on slowly."
     return [] if found is not None else [none]
+
+
+def _unevenness_note(found: Gains, loads: Reading) -> list[str]:
+    if loads not in LAWFUL or not np.isfinite(found.sigma):
+        return []
+    unit = unit_of(loads)
+    told = "; a pad given by --pad tells it" if loads == "volt" else ""
+    return [
+        f"The unevenness is that of {unit}, not of the loads that a law makes of them, and so not "
+        f"in the file{told}."
+    ]
