@@ -107,7 +107,8 @@ class Learned:
         and law were told. None where no gains stand out from chance.
     turn_on : TurnOn, optional
     curve : tuple of (float, float)
-        Rising law from a reading above the offset to grams on the element; empty for none.
+        Rising law from a reading above the offset to grams on the element, from 0 g on; empty
+        for none.
     place : str
         The correction of place: a file beside the pad's; empty for none.
     """

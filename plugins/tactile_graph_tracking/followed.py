@@ -5,6 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
+STALE = 4.0
+"""Standard deviations of a place by which an acceleration may displace an object in the time
+between two frames: from then on the mean velocity since the last one is surer than the filter's."""
+
 State = Literal["appears", "moves", "rests", "leaves"]
 
 
@@ -44,19 +48,33 @@ class Followed:
         self.seen_x_cm, self.seen_y_cm = self.x_cm, self.y_cm
         self.expected_x_cm, self.expected_y_cm = self.x_cm, self.y_cm
         self.n_seen = 1
+        self.over_s = 0.0
+        """Time between the last two frames it was seen in."""
         self.vx_cm_s = self.vy_cm_s = 0.0
         # Variances of place and velocity and their covariance, the same along x and y.
         self.place, self.both, self.speed = self.noise_cm**2, 0.0, self.fastest_cm_s**2
 
-    def go_on(self, dt_s: float, agility_cm_s2: float) -> None:
-        """Move on by a time, growing unsure by what an acceleration could have done."""
-        push = agility_cm_s2**2
+    def go_on(self, dt_s: float, agility_cm_s2: float, patience_s: float) -> None:
+        """Move on by a time, growing unsure by what an acceleration could have done.
+
+        Parameters
+        ----------
+        dt_s : float
+        agility_cm_s2 : float
+        patience_s : float
+            No velocity is believed for longer, except for as long as it was measured over.
+        """
         # After two frames a velocity is mostly noise: what it says is believed as far as it
         # stands out of that, or a gap would carry a resting object out of its own gate.
         swift = self.vx_cm_s**2 + self.vy_cm_s**2
         trust = swift / (swift + 2.0 * self.speed) if swift > 0.0 else 0.0
-        self.expected_x_cm = self.x_cm + trust * self.vx_cm_s * dt_s
-        self.expected_y_cm = self.y_cm + trust * self.vy_cm_s * dt_s
+        reach_s = min(dt_s, max(patience_s, self.over_s))
+        self.expected_x_cm = self.x_cm + trust * self.vx_cm_s * reach_s
+        self.expected_y_cm = self.y_cm + trust * self.vy_cm_s * reach_s
+        push = agility_cm_s2**2
+        if dt_s > patience_s and agility_cm_s2 * dt_s**2 > STALE * self.noise_cm:
+            self.vx_cm_s = self.vy_cm_s = self.both = push = 0.0
+            self.speed = self.fastest_cm_s**2
         self.x_cm += self.vx_cm_s * dt_s
         self.y_cm += self.vy_cm_s * dt_s
         self.place += 2.0 * dt_s * self.both + dt_s**2 * self.speed + push * dt_s**4 / 4.0
@@ -75,6 +93,7 @@ class Followed:
         self.speed -= along * self.both
         self.both *= 1.0 - at
         self.place *= 1.0 - at
+        self.over_s = now_s - self.seen_s
         self.contact, self.seen_s, self.call = contact, now_s, call
         self.seen_x_cm, self.seen_y_cm = x_cm, y_cm
         self.n_seen += 1

@@ -41,7 +41,8 @@ class Track:
     Each object is expected where its velocity takes it in the true time since the last frame.
     Contacts and objects are paired so that the sum of costs is least: squared distance, and a
     squared log ratio of areas, which helps to tell objects apart that cross. An object not seen
-    for ``patience_s`` leaves; until then it may come back under its id.
+    for ``patience_s`` leaves; until then it may come back under its id. Where frames come so far
+    apart that the velocity before tells little, the velocity is the mean since the last frame.
 
     Parameters
     ----------
@@ -124,7 +125,7 @@ class Track:
         self._now_s += dt_s
         self._call += 1
         for one in self._all:
-            one.go_on(min(dt_s, self._patience_s), self._agility_cm_s2)
+            one.go_on(dt_s, self._agility_cm_s2, self._patience_s)
 
     def _see(self, contacts: list[Any], xy: Reals, areas: Reals) -> None:
         """Tell each object which contact it is, and follow those that are nobody's."""

@@ -18,7 +18,8 @@ class _Gap:
 
 
 TimeGap = Annotated[float | None, _Gap()]
-"""Seconds since the step last ran; None at its first frame or where the source keeps no time."""
+"""Seconds since the step last ran; None at its first frame, and where this frame or that of the
+last run has no time."""
 
 
 def is_time_gap(metadata: tuple[object, ...]) -> bool:

@@ -61,6 +61,41 @@ def test_velocity_and_age_are_in_true_time():
     assert (one.x_cm, one.y_cm) == (x, 9.0 - x)
 
 
+@pytest.mark.parametrize("dt_s", [0.02, 0.1, 0.2, 1.0])
+@pytest.mark.parametrize("patience_s", [0.05, 0.5])
+def test_velocity_is_true_however_far_apart_frames_come(dt_s, patience_s):
+    track = Track(patience_s=patience_s)
+    for k in range(14):
+        tracks = track([Spot(4.0 + 0.4 * k, 5.0)], gap_s=None if k == 0 else dt_s)
+    (one,) = tracks.tracks
+    assert (one.vx_cm_s, one.vy_cm_s) == pytest.approx((0.4 / dt_s, 0.0), rel=0.01)
+
+
+def test_dropped_frames_change_no_velocity():
+    track, before_s = Track(patience_s=0.05), 0.0
+    for k in (0, 1, 2, 3, 8, 9):
+        tracks = track([Spot(4.0 + 0.4 * k, 5.0)], gap_s=k * DT - before_s)
+        before_s = k * DT
+        assert k == 0 or tracks.tracks[0].vx_cm_s == pytest.approx(20.0, rel=0.02)
+
+
+def test_after_a_long_gap_velocity_is_the_mean_since():
+    track = Track(patience_s=0.05)
+    for k in range(10):
+        track([Spot(4.0 + 0.4 * k, 5.0)], gap_s=DT)
+    tracks = track([Spot(8.6, 5.0)], gap_s=10.0)
+    assert states(tracks) == {1: "rests"}
+    assert tracks.tracks[0].vx_cm_s == pytest.approx(0.1, abs=0.01)
+
+
+def test_farther_apart_than_their_patience_objects_are_expected_where_they_go():
+    """It gains less than a gate from frame to frame, and goes more than two in the end."""
+    track, x_cm = Track(patience_s=0.05, gate_cm=1.0), 0.0
+    for k in range(4):
+        x_cm += 0.8 * k
+        assert ids_by_name(track([Spot(x_cm, 5.0, name="goes")], gap_s=1.0)) == {"goes": 1}
+
+
 def test_an_object_unseen_for_a_while_comes_back_under_its_id_where_it_went():
     track = Track(patience_s=0.5)
     for k in range(20):
@@ -248,6 +283,14 @@ def test_a_source_without_time_counts_frames():
     run = loads(PIPELINE.replace("patience_s: 1", "frame_s: 0.5, patience_s: 1")).runner()
     ages = [run(pad(None, (2, 2)))["tracks"].tracks[0].age_s for _ in range(3)]
     assert ages == pytest.approx([0.0, 0.5, 1.0])
+
+
+def test_where_times_are_there_only_now_and_then_none_is_counted_twice():
+    run = loads(PIPELINE).runner()
+    for k in range(6):
+        frame = pad(None if k % 2 else k * DT, (2, 2))
+        tracks = run(frame)["tracks"]
+        assert tracks.tracks[0].age_s == pytest.approx(k * DT)
 
 
 def test_a_track_is_drawn_with_its_number_and_the_way_it_goes():

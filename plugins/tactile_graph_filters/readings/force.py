@@ -137,7 +137,7 @@ class Force:
     def __init__(
         self,
         *,
-        pad: Annotated[str | dict[str, Any] | None, Quantity("siemens", of="image")] = None,
+        pad: str | dict[str, Any] | None = None,
         curve: Curve = None,
         polynomial: list[float] | None = None,
         up_to: float | None = None,
@@ -171,7 +171,14 @@ class Force:
         elif polynomial is None:
             from tactile_graph_pads.pad import load_pad
 
-            self._law = load_pad("thesis" if pad is None else pad).law
+            told = load_pad("thesis" if pad is None else pad)
+            self._law = told.law
+            self.takes_by = "" if pad is None else "pad"
+            if told.learned is not None and told.learned.curve:
+                self.takes_hint = (
+                    f"the law that was learned of the pad's {told.learned.reading} is its "
+                    "learned.curve: give those points as curve, not the pad"
+                )
         read = self._quantity if self._law is None else "siemens"
         self.takes = {"image": (read,)} if read else {}
         turn_on_g = 0.0 if self._law is None else self._law.turn_on_g

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.errors import Degenerate
-from tactile_graph.wires import Points
+from tactile_graph.wires import Image, Points
 from tactile_graph_fitters.circle.principal_axes import NOT_SETTLED, OK, OUT_OF_RANGE, into_frame
 from tactile_graph_fitters.ellipse.damped_steps import damped_step
+from tactile_graph_fitters.orientation.element_pitch import element_pitch_cm
 from tactile_graph_fitters.orientation.oriented import Oriented
 from tactile_graph_fitters.rectangle.fitted_rectangle import FittedRectangle, rectangle_of
 
@@ -22,6 +23,7 @@ TRIM = 16  # part of the points left out each way, for strays
 STARTS = 2  # of these are searched from
 ROUNDS = 100
 STEP = 1e-11  # of the points' extent
+SCALE_CELLS = 0.5 / 1.3  # distance, in pitches, from which on a point counts linearly
 LEVEL = 1e-5  # relative decrease of the cost over `PATIENCE` rounds that is taken for none
 PATIENCE = 10
 
@@ -32,10 +34,11 @@ Found: TypeAlias = tuple[int, float, float, float, float, float, float, int]
 
 def fit_rectangle(
     points: Points,
+    elements: Image | None = None,
     *,
-    scale_cm: Annotated[float, Gt(0)] = 0.5,
+    scale_cm: Annotated[float | None, Gt(0)] = None,
     inside_cm: Annotated[float, Ge(0)] = 0.0,
-    cell_cm: Annotated[float, Gt(0)] = 1.3,
+    cell_cm: Annotated[float | None, Gt(0)] = None,
 ) -> FittedRectangle:
     """Return the rectangle with the least robust distance of its outline from the points.
 
@@ -43,14 +46,18 @@ def fit_rectangle(
     ----------
     points : Points
         On the outline, on at least three of its sides.
-    scale_cm : float
-        Distance from which on a point counts linearly instead of by its square.
+    elements : Image, optional
+        What was read, as it was read: not subdivided.
+    scale_cm : float, optional
+        Distance from which on a point counts linearly instead of by its square; 0.385 pitches of
+        the elements if not given, 0.5 cm on the thesis' pad.
     inside_cm : float
         How far inside the outline the points lie; the sides come out larger by twice that.
         Centres of boundary cells lie about a third of a cell inside an outline that turns on
         each cell it covers by a fifth.
-    cell_cm : float
-        Pitch of the elements that were read, for ``ambiguous``.
+    cell_cm : float, optional
+        Pitch of the elements that were read, for ``ambiguous`` and ``scale_cm``; that of
+        ``elements`` if not given, or 1.3, the thesis' pad's.
 
     Returns
     -------
@@ -75,12 +82,14 @@ def fit_rectangle(
     7.
     """
     xy = np.ascontiguousarray(points.xy_cm, dtype=np.float64)
+    pitch_cm = element_pitch_cm(elements, cell_cm)
+    scale_cm = SCALE_CELLS * pitch_cm if scale_cm is None else scale_cm
     status, x, y, first, second, angle, misfit, rounds = outline_fit(xy, scale_cm, STARTS, STEP)
     n = len(xy)
     if status != OK:
         raise Degenerate(_why(xy, status, rounds))
     first, second = 2.0 * (first + inside_cm), 2.0 * (second + inside_cm)
-    return rectangle_of(Oriented(x, y, first, second, angle), misfit, n, rounds, cell_cm)
+    return rectangle_of(Oriented(x, y, first, second, angle), misfit, n, rounds, pitch_cm)
 
 
 def _why(xy: Values, status: int, rounds: int) -> str:

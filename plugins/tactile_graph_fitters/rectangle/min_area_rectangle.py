@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
-from tactile_graph.wires import Points
+from tactile_graph.wires import Image, Points
+from tactile_graph_fitters.orientation.element_pitch import element_pitch_cm
 from tactile_graph_fitters.orientation.oriented import Oriented
 from tactile_graph_fitters.rectangle.fitted_rectangle import FittedRectangle, rectangle_of
 
@@ -19,7 +20,10 @@ Values = NDArray[np.float64]
 
 
 def min_area_rectangle(
-    points: Points, *, cell_cm: Annotated[float, Gt(0)] = 1.3
+    points: Points,
+    elements: Image | None = None,
+    *,
+    cell_cm: Annotated[float | None, Gt(0)] = None,
 ) -> FittedRectangle:
     """Return the rectangle of least area that holds all points.
 
@@ -27,8 +31,11 @@ def min_area_rectangle(
     ----------
     points : Points
         Of any kind; their hull, which `hull` gives, holds all that matters.
-    cell_cm : float
-        Pitch of the elements that were read, for ``ambiguous``.
+    elements : Image, optional
+        What was read, as it was read: not subdivided.
+    cell_cm : float, optional
+        Pitch of the elements that were read, for ``ambiguous``; that of ``elements`` if not given,
+        or 1.3, the thesis' pad's.
 
     Returns
     -------
@@ -65,7 +72,8 @@ def min_area_rectangle(
         x, y, first, second = (math.ldexp(v, exponent) for v in (*found[:2], first, second))
     except OverflowError:
         raise Degenerate(f"{n} points: their rectangle is too large for a number") from None
-    return rectangle_of(Oriented(x, y, first, second, angle), empty, n, len(corners), cell_cm)
+    pitch_cm = element_pitch_cm(elements, cell_cm)
+    return rectangle_of(Oriented(x, y, first, second, angle), empty, n, len(corners), pitch_cm)
 
 
 @compiled_later

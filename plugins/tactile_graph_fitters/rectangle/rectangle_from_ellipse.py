@@ -9,8 +9,9 @@ import numpy as np
 from annotated_types import Gt
 
 from tactile_graph.errors import Degenerate
-from tactile_graph.wires import Ellipse, Rectangle
+from tactile_graph.wires import Ellipse, Image, Rectangle
 from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse
+from tactile_graph_fitters.orientation.element_pitch import element_pitch_cm
 from tactile_graph_fitters.rectangle.fitted_rectangle import alike
 
 # Half axes a, b of the ellipse that `fit_ellipse_origin` fits to the evenly covered outline of a
@@ -69,9 +70,11 @@ class EllipseRectangle(Rectangle):
 
 def rectangle_from_ellipse(
     ellipse: Ellipse,
+    elements: Image | None = None,
     *,
     inside_cm: float = 0.0,
-    cell_cm: Annotated[float, Gt(0)] = 1.3,
+    inside_cells: float = 0.0,
+    cell_cm: Annotated[float | None, Gt(0)] = None,
 ) -> EllipseRectangle:
     """Return the rectangle an ellipse fitted to a rectangular outline stands for.
 
@@ -79,13 +82,18 @@ def rectangle_from_ellipse(
     ----------
     ellipse : Ellipse
         From `fit_ellipse_origin`.
+    elements : Image, optional
+        What was read, as it was read: not subdivided.
     inside_cm : float
         How far inside the object's outline the fitted points lie, for the corrected sides;
         below 0 where they lie outside. Centres of boundary cells lie half a cell inside the cells'
         outline, and the cells' outline, where a covered fifth turns a cell on, as much as 0.3 cm
         (on the thesis' pad) outside the object's.
-    cell_cm : float
-        Pitch of the elements that were read, for `ambiguous`.
+    inside_cells : float
+        The same in elements' pitches; both count.
+    cell_cm : float, optional
+        Pitch of the elements that were read, for `ambiguous` and ``inside_cells``; that of
+        ``elements`` if not given, or 1.3, the thesis' pad's.
 
     Returns
     -------
@@ -95,7 +103,7 @@ def rectangle_from_ellipse(
     Raises
     ------
     Degenerate
-        If the ellipse encloses nothing, or ``inside_cm`` leaves no side.
+        If the ellipse encloses nothing, or what the points lie inside leaves no side.
 
     Notes
     -----
@@ -109,12 +117,14 @@ def rectangle_from_ellipse(
     if not a > 0.0:
         raise Degenerate(f"half axes of {a:.3g} by {b:.3g} cm enclose nothing: no rectangle")
     ratio = b / a
+    cell_cm = element_pitch_cm(elements, cell_cm)
+    inside_cm = inside_cm + inside_cells * cell_cm
     length = 2.0 * a * float(np.interp(ratio, BIAS[:, 0], BIAS[:, 1])) + 2.0 * inside_cm
     breadth = 2.0 * b * float(np.interp(ratio, BIAS[:, 0], BIAS[:, 2])) + 2.0 * inside_cm
     if not min(length, breadth) > 0.0:
         raise Degenerate(
             f"sides of {length - 2.0 * inside_cm:.3g} by {breadth - 2.0 * inside_cm:.3g} cm leave "
-            f"nothing {-2.0 * inside_cm:.3g} cm further in (inside_cm: {inside_cm:g})"
+            f"nothing {-2.0 * inside_cm:.3g} cm further in (told to lie {inside_cm:g} cm inside)"
         )
     quality = (ellipse.rms_cm, ellipse.n_points) if isinstance(ellipse, FittedEllipse) else (0.0, 0)
     return EllipseRectangle(

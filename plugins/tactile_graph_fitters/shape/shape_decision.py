@@ -10,9 +10,10 @@ from annotated_types import Ge, Gt, Le
 from numpy.typing import NDArray
 
 from tactile_graph.errors import Degenerate
-from tactile_graph.wires import Circle, Ellipse, Points, Polygon, Rectangle
+from tactile_graph.wires import Circle, Ellipse, Image, Points, Polygon, Rectangle
 from tactile_graph_fitters.circle.fitted_circle import FittedCircle
 from tactile_graph_fitters.ellipse.fitted_ellipse import ellipse_of
+from tactile_graph_fitters.orientation.element_pitch import element_pitch_cm
 from tactile_graph_fitters.orientation.oriented import Oriented
 from tactile_graph_fitters.rectangle.fitted_rectangle import rectangle_of
 from tactile_graph_fitters.shape.shape_confidence import (
@@ -62,8 +63,9 @@ class Fits(NamedTuple):
 
 def shape_decision(
     points: Points,
+    elements: Image | None = None,
     *,
-    cell_cm: Annotated[float, Gt(0)] = 1.3,
+    cell_cm: Annotated[float | None, Gt(0)] = None,
     max_corners: Annotated[int, Ge(3), Le(12)] = MOST_CORNERS,
     temperature: Annotated[float, Gt(0)] = 1.0,
 ) -> ShapeDecision:
@@ -73,8 +75,11 @@ def shape_decision(
     ----------
     points : Points
         Of the boundary.
-    cell_cm : float
-        Pitch of the elements that were read.
+    elements : Image, optional
+        What was read, as it was read: not subdivided.
+    cell_cm : float, optional
+        Pitch of the elements that were read; that of ``elements`` if not given, or 1.3, the
+        thesis' pad's.
     max_corners : int
         A polygon is given 3 up to so many corners.
     temperature : float
@@ -103,6 +108,7 @@ def shape_decision(
     from tactile_graph_hull.hull import hull
 
     outline = hull(points)
+    cell_cm = element_pitch_cm(elements, cell_cm)
     _refuse_far_apart(outline, cell_cm)
     if outline.count < 3 or outline.area_cm2 <= 0.0:
         raise Degenerate(f"{points.count} points on one line: no shape to decide on")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,8 @@ MOST_KNOTS = 10
 
 class ForceCurve(NamedTuple):
     """Points (reading, grams) of a law that never falls, and how well it weighs what it was not
-    made from: ``found_g`` beside ``true_g`` of each frame, held out in turn with its block."""
+    made from: ``found_g`` beside ``true_g`` of each frame, held out in turn with its block. The
+    first point has 0 g: what reads less is noise."""
 
     points: tuple[tuple[float, float], ...]
     found_g: Array
@@ -34,7 +36,7 @@ def force_curve(readings: Array, weight_g: Array, shows_from: float) -> ForceCur
     Parameters
     ----------
     readings : ndarray, shape (frames, elements)
-        Above the offset, of the elements that are good.
+        Above the offset.
     weight_g : ndarray, shape (frames,)
         NaN where nobody knows it.
     shows_from : float
@@ -54,8 +56,10 @@ def force_curve(readings: Array, weight_g: Array, shows_from: float) -> ForceCur
     weights = weight_g[known]
     if known.sum() < LEAST_FRAMES or weights.max() < LEAST_SPAN * weights.min():
         return None
-    seen = np.where(readings[known] > shows_from, readings[known], 0.0)
-    nodes = _nodes(seen)
+    seen = readings[known]
+    nodes = _nodes(seen, shows_from)
+    if len(nodes) < 2:
+        return None
     block = np.arange(len(seen)) % min(5, len(seen))
     found = np.empty(len(seen))
     for k in range(int(block.max()) + 1):
@@ -66,13 +70,22 @@ def force_curve(readings: Array, weight_g: Array, shows_from: float) -> ForceCur
     if grams[-1] <= 0.0:
         return None
     points = tuple(zip(nodes.tolist(), grams.tolist(), strict=True))
-    return ForceCurve(points[1:], found, weights)
+    return ForceCurve(points, found, weights)
 
 
-def _nodes(seen: Array) -> Array:
-    shown = seen[seen > 0.0]
-    inner = np.quantile(shown, np.linspace(0.1, 1.0, MOST_KNOTS))
-    return np.unique(np.concatenate([[0.0, float(shown.min())], inner]))
+def _nodes(seen: Array, shows_from: float) -> Array:
+    """Return readings, rising, at which the law bends: rounded up as they are written."""
+    shown = seen[seen > shows_from]
+    inner = np.quantile(shown, np.linspace(0.0, 1.0, MOST_KNOTS + 1))
+    return np.unique([_rounded_up(float(x)) for x in (shows_from, *inner)])
+
+
+def _rounded_up(reading: float) -> float:
+    """Return a reading with 6 digits, none below it: a law reads nothing past its last point."""
+    rounded = float(f"{reading:.6g}")
+    if rounded >= reading:
+        return rounded
+    return float(f"{rounded + 10.0 ** (math.floor(math.log10(reading)) - 5):.6g}")
 
 
 def _fitted(seen: Array, weight_g: Array, nodes: Array) -> Array:

@@ -48,6 +48,18 @@ DRIFTS = 3.0
 """Noises that the empty pad may move before it is said."""
 
 
+LAWFUL = ("volt", "siemens")
+"""Quantities of readings that steps turn into loads by a law, whose unevenness is another's."""
+
+
+class Uneven(NamedTuple):
+    """How unevenly loads come down, as `tactile_graph_pads.unevenness.Unevenness` names it."""
+
+    sigma: float
+    fixed: float
+    voids: float
+
+
 @dataclass(frozen=True, eq=False)
 class LearnedPad:
     """A pad's record, and what it was made from, for whoever judges it.
@@ -84,6 +96,15 @@ class LearnedPad:
     place: LearnedPlace | None = None
     counted_right: float | None = None
     notes: tuple[str, ...] = ()
+
+    @property
+    def unevenness(self) -> Uneven | None:
+        """Of the loads that steps see; None where it is not known, or only that of readings."""
+        if self.gains is None or self.silence is None or self.loads in LAWFUL:
+            return None
+        if not np.isfinite(self.gains.sigma):
+            return None
+        return Uneven(self.gains.sigma, self.gains.fixed, self.silence.voids)
 
 
 def learn_pad(empty: Stack | None, objects: Stack | None, base: Pad | None = None) -> LearnedPad:
@@ -234,7 +255,7 @@ def _of_objects(
     rest, seen = known.rest, _pressed(objects, bare, shows_from, known)
     if not seen.gains.stand_out:
         notes.append(_no_gains(seen.gains, seen.placements))
-    curve = force_curve(seen.evened[:, seen.good], objects.weight_g, shows_from)
+    curve = force_curve(seen.evened.reshape(len(objects), -1), objects.weight_g, shows_from)
     places = _places(objects)
     level, right = _level(seen.evened, places, shows_from)
     learned = replace(
@@ -246,6 +267,7 @@ def _of_objects(
     )
     place = _place(objects, seen, places, learned.touched_from, notes)
     notes += _weights_note(objects, curve) + _turn_on_note(seen.turn_on)
+    notes += _unevenness_note(seen.gains, known.loads)
     return LearnedPad(
         learned, _elements(rest, seen.silence, seen.gains.gain), rest, seen.silence, seen.gains,
         known.loads, seen.under, curve, place, right, tuple(notes),
@@ -394,14 +416,33 @@ def _no_gains(found: Gains, n_placements: int) -> str:
 
 
 def _weights_note(objects: Stack, curve: ForceCurve | None) -> list[str]:
-    if curve is not None:
-        return []
-    n = int(np.isfinite(objects.weight_g).sum())
-    if n == 0:
+    known = np.isfinite(objects.weight_g)
+    n = int(known.sum())
+    if curve is None and n == 0:
         return ["No weights are known: no law from readings to grams."]
-    return [f"{n} known weights are too few or too much alike: no law from readings to grams."]
+    if curve is None:
+        return [f"{n} known weights are too few or too much alike: no law from readings to grams."]
+    n_loaded = int((known & (objects.weight_g > 0.0)).sum())
+    n_unseen = n_loaded - len(curve.true_g)
+    if n_unseen == 0:
+        return []
+    return [
+        f"In {n_unseen} of {n_loaded} frames of known weight no reading is more than noise: they "
+        "weigh 0 g, and do not count among the held-out weights."
+    ]
 
 
 def _turn_on_note(found: TurnOn | None) -> list[str]:
     none = "No turn-on is seen: readings begin in the noise, or come on slowly."
     return [] if found is not None else [none]
+
+
+def _unevenness_note(found: Gains, loads: Reading) -> list[str]:
+    if loads not in LAWFUL or not np.isfinite(found.sigma):
+        return []
+    unit = unit_of(loads)
+    told = "; a pad given by --pad tells it" if loads == "volt" else ""
+    return [
+        f"The unevenness is that of {unit}, not of the loads that a law makes of them, and so not "
+        f"in the file{told}."
+    ]

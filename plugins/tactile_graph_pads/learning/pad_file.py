@@ -116,15 +116,11 @@ def _sections(found: LearnedPad, base: Pad | None) -> dict[str, Any]:
         sections["scan"] = {"samples": 1, "noise_v": noise_v}
         if base is None:
             sections["converter"] = {"bits": None}  # its rounding is within the noise as seen
-    if found.loads == "gram" and found.gains is not None and found.silence is not None:
-        if found.learned.turn_on is not None:
-            sections["law"]["turn_on_g"] = found.learned.turn_on.reading
-        if np.isfinite(found.gains.sigma):
-            sections["unevenness"] = {
-                "sigma": found.gains.sigma,
-                "fixed": found.gains.fixed,
-                "voids": found.silence.voids,
-            }
+    turn_on = found.learned.turn_on
+    if turn_on is not None and turn_on.of == "gram" and "law" in sections:
+        sections["law"]["turn_on_g"] = turn_on.reading
+    if found.unevenness is not None:
+        sections["unevenness"] = found.unevenness._asdict()
     sections["defects"] = _defects(found)
     return {**sections, "learned": asdict(found.learned)}
 

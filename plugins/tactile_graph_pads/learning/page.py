@@ -94,7 +94,7 @@ def nodes(found: LearnedPad, pad: str) -> str:
             f"with: {{pad: {pad}}}}}"
         )
     if found.curve is not None:
-        points = ", ".join(f"[{r:.5g}, {g:.5g}]" for r, g in found.curve.points)
+        points = ", ".join(f"[{r:.6g}, {g:.6g}]" for r, g in found.curve.points)
         lines.append(f"grams: {{step: force, in: {read}, with: {{curve: [{points}]}}}}")
     return "nodes:\n" + "\n".join(f"  {line}" for line in lines)
 

@@ -83,7 +83,7 @@ def _with_gap(step: Call, name: str, context: Context) -> Call:
         nonlocal last
         now = context.frame.time_s
         gap = None if last is None or now is None else now - last
-        last = now if now is not None else last
+        last = now
         return step(*args, **kwargs, **{name: gap})
 
     return call

@@ -155,3 +155,16 @@ def test_cells_beyond_the_calibrated_range_carry_a_notice():
     assert pipeline.run(beyond).notices["grams"].startswith("2 cells read more than the law")
     assert pipeline.run(beyond)["load"].n_left_out == 2
     assert pipeline.run(broken).notices == {}
+
+
+def test_a_pad_whose_learned_law_reads_something_else_says_where_that_law_is():
+    learned = {
+        "reading": "raw", "rows": 1, "columns": 1, "pitch_cm": [1.0, 1.0], "origin_cm": [0.0, 0.0],
+        "elements": "p.elements.csv", "noise": 0.5, "touched_from": 3.0,
+        "curve": [[3.0, 0.0], [9.0, 18.0]],
+    }  # fmt: skip
+    pad = {"geometry": {"rows": 1, "columns": 1}, "learned": learned}
+    nodes = f"{{f: {{step: force, in: frame, with: {{pad: {pad}}}}}}}"
+    pipeline = loads(f"{{pipeline: p, nodes: {nodes}, outputs: [f]}}")
+    with pytest.raises(RuleError, match=r"setting 'pad' .* got a frame of raw; .* learned\.curve"):
+        pipeline.run(Frame(image_of([[1.0]], "raw")))

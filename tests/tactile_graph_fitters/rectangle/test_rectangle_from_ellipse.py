@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from scipy.optimize import least_squares
 
 from helpers_rectangles import points, rectangle_xy, seeds, some_rectangle
-from tactile_graph.wires import Ellipse, Rectangle
+from tactile_graph.wires import Ellipse, Image, Rectangle
 from tactile_graph_fitters.ellipse.fit_ellipse_origin import fit_ellipse_origin
 from tactile_graph_fitters.orientation.orientation import Orientation
 from tactile_graph_fitters.orientation.rotate_points import rotate_points
@@ -91,3 +91,13 @@ def test_the_quality_of_the_fit_is_passed_on():
     assert got.rms_cm == ellipse.rms_cm > 0.0
     assert got.n_points == 100
     assert math.isfinite(got.corrected_length_cm)
+
+
+def test_how_far_inside_can_be_told_in_pitches_of_the_elements():
+    ellipse, elements = Ellipse(3.0, 4.0, 5.0, 2.0, 0.4), Image(np.zeros((2, 2)), (0.5, 0.5))
+    by_cells = rectangle_from_ellipse(ellipse, elements, inside_cells=0.6)
+    assert by_cells == rectangle_from_ellipse(ellipse, inside_cm=0.3, cell_cm=0.5)
+    near = Ellipse(3.0, 4.0, 0.52, 0.42, 0.4)
+    fine = Image(np.zeros((2, 2)), (0.01, 0.01))
+    assert rectangle_from_ellipse(near).ambiguous
+    assert not rectangle_from_ellipse(near, fine).ambiguous

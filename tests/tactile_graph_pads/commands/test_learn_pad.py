@@ -152,8 +152,9 @@ def test_weights_on_the_command_line_make_a_law(tmp_path: Path) -> None:
         path = tmp_path / f"weight{k}.npz"
         write_npz(path, untold(iter([pad.frame(((4.0 + k, 6.0, height),))])))
         given.append(f"{path}={10.0 * height:g}")
+    write_npz(tmp_path / "light.npz", untold(iter([pad.frame(((9.0, 6.0, 3.0),))])))
     out = tmp_path / "pad.yaml"
-    said = run("--empty", empty, *given, "-o", out)
+    said = run("--empty", empty, *given, f"{tmp_path / 'light.npz'}=30", "-o", out)
     learned = load_pad(out).learned
     assert learned is not None
     readings, grams = np.array(learned.curve).T
@@ -161,6 +162,7 @@ def test_weights_on_the_command_line_make_a_law(tmp_path: Path) -> None:
     # the made-up pad reads in proportion: 16.9 cells of height h weigh 10 h
     assert np.interp(200.0, readings, grams) == pytest.approx(10 / 18.5 * 200, rel=0.15)
     assert "held-out weights off by" in said
+    assert "In 1 of 13 frames of known weight no reading is more than noise" in said
     assert "No places are known" in said
 
 

@@ -34,3 +34,16 @@ def test_unknown_weights_are_left_out_and_too_few_or_alike_tell_nothing():
     assert force_curve(readings, weight_g, 1.0) is None
     assert force_curve(readings, np.full(40, 300.0), 1.0) is None
     assert force_curve(0.0 * readings, weighed()[1], 1.0) is None
+
+
+def test_what_shows_nothing_weighs_nothing_and_no_reading_is_past_the_last_point():
+    readings, weight_g = weighed()
+    noisy = np.hstack([readings, np.random.default_rng(1).normal(0.0, 0.3, (40, 400))])
+    found = force_curve(noisy, weight_g, 1.23456789)
+    assert found is not None
+    at, grams = np.array(found.points).T
+    assert (at[0], grams[0]) == (1.23457, 0.0)
+    assert at[-1] >= readings.max()
+    assert [float(f"{x:.6g}") for x in at] == at.tolist()
+    weighs = np.interp(noisy, at, grams).sum(axis=1)
+    assert np.median(np.abs(weighs / weight_g - 1.0)) < 0.05

@@ -62,6 +62,36 @@ def test_noise_goes_where_localisers_look_for_it(even: LearnedPad, tmp_path: Pat
     assert (pad.scan.samples, pad.converter.bits) == (1, None)
     assert pad.geometry.shape == (16, 16)
     assert pad.unevenness == Pad().unevenness
+    assert "The unevenness is that of V, not of the loads" in "".join(even.notes)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("quantity", ["raw", "gram"])
+def test_readings_that_steps_take_as_loads_have_the_unevenness_of_loads(
+    quantity: str, tmp_path: Path
+) -> None:
+    rng = np.random.default_rng(2)
+    row, column = np.mgrid[:16, :16]
+
+    def frame(load: np.ndarray, index: int) -> Frame:
+        values = load + 0.5 * rng.standard_normal((16, 16))
+        return Frame.of(values, 1.0, quantity=quantity, index=index)
+
+    write_npz(tmp_path / "empty.npz", [frame(np.zeros((16, 16)), k) for k in range(60)])
+    discs = []
+    for k in range(120):
+        x, y = rng.uniform(2.0, 13.0, 2)
+        scatter = np.exp(0.15 * rng.standard_normal((16, 16)))
+        discs.append(frame(np.where(np.hypot(column - x, row - y) < 4.0, 50.0 * scatter, 0.0), k))
+    write_npz(tmp_path / "discs.npz", discs)
+    paths = tmp_path / "empty.npz", tmp_path / "discs.npz"
+    found = learn_pad(*(read_stack([(path, None)]) for path in paths))
+    write_pad(tmp_path / "pad.yaml", found, None, MAKING)
+    pad = load_pad(tmp_path / "pad.yaml")
+    assert pad.learned is not None
+    assert pad.learned.turn_on is not None
+    assert pad.unevenness.sigma == pytest.approx(0.15, rel=0.1)
+    assert (pad.unevenness.voids, pad.unevenness.fixed) == (0.0, 0.0)
 
 
 @pytest.mark.slow

@@ -214,12 +214,12 @@ CHAPTER_4: dict[str, dict[str, dict[str, Any]]] = {
     },
     "rectangle-1": {
         "footprint": {"level_v": 0.01}, "smooth": {"size": 3}, "clean": {"level": 0.3},
-        "rectangle": {"inside_cm": 0.35},
+        "rectangle": {"inside_cells": 0.35 / 1.3},
     },
     "rectangle-2": {
         "footprint": {"level_v": 0.01}, "smooth": {"size": 3}, "clean": {"level": 0.3},
         "fine": {"factor": 10}, "filled": {"element": "cross3", "times": 8},
-        "opened": {"element": "square21"}, "rectangle": {"inside_cm": -0.05},
+        "opened": {"element": "square21"}, "rectangle": {"inside_cells": -0.05 / 1.3},
     },
 }  # fmt: skip
 
