@@ -64,7 +64,8 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     Raises
     ------
     RuleError
-        If the cells are not nearly square, or the gap leaves no element.
+        If the cells are not nearly square, the gap leaves no element, or the pad was learned, of
+        another shape or quantity.
     DataError
         If a valid cell is not finite or beyond 1e100.
     Degenerate
