@@ -10,7 +10,13 @@ from numpy.typing import NDArray
 
 from tactile_graph.quantities import unit_of
 from tactile_graph.wires import Image, Mask
+from tactile_graph_filters.readings.clipped_noise import clipped_noise
 from tactile_graph_filters.readings.dead_lines import dead_lines
+from tactile_graph_filters.readings.ordered import in_order
+
+Values = NDArray[np.float64]
+EVERY = np.zeros((0, 0), np.bool_)
+"""Stands for cells all of which are read."""
 
 LOW, MIDDLE = 0.05, 0.25
 """Shares of the cells, by rising reading: the unloaded ones are among the lower quarter."""
@@ -34,8 +40,9 @@ def noise_level(image: Image) -> float:
     -------
     float
         The lower quartile, plus ten standard deviations of the noise, as the distance of the
-        5 % quantile from the quartile tells it, or 3 % of the peak's height if that is more. Above
-        every reading where all are equal; infinite where no cell is valid.
+        5 % quantile from the quartile tells it (where both are cut off: `clipped_noise`), or 3 %
+        of the peak's height if that is more. Above every reading where all are equal; infinite
+        where no cell is valid.
 
     Notes
     -----
@@ -52,19 +59,37 @@ def noise_level(image: Image) -> float:
 def lower_readings(image: Image) -> tuple[float, float, float] | None:
     """Return the 5 % quantile, the lower quartile and the peak of the cells that are read.
 
-    None where no cell is valid.
+    Where both quantiles are the same, the first is what it were if nothing had cut off the noise
+    that `clipped_noise` finds above. None where no cell is valid.
     """
     rows, columns = dead_lines(image)
-    values = image.values
-    if image.valid is not None or rows.any() or columns.any():
-        usable = ~rows[:, None] & ~columns
-        values = values[usable if image.valid is None else usable & image.valid]
+    values, usable = image.values, image.valid
+    if rows.any() or columns.any():
+        alive = ~rows[:, None] & ~columns
+        usable = alive if usable is None else alive & usable
+    if usable is not None:
+        values = values[usable]
     if values.size == 0:
         return None
     seen = np.asarray(values, np.float64).ravel()
     low, middle = (int(share * (seen.size - 1)) for share in (LOW, MIDDLE))
     parted = np.partition(seen, (low, middle, seen.size - 1))
-    return float(parted[low]), float(parted[middle]), float(parted[-1])
+    lowest, base, peak = (float(parted[k]) for k in (low, middle, seen.size - 1))
+    if lowest == base < peak:
+        lowest -= LOW_TO_MIDDLE_SD * _noise_above(image.values, usable, seen, base)
+    return lowest, base, peak
+
+
+def _noise_above(
+    values: NDArray[Any], usable: NDArray[np.bool_] | None, seen: Values, rest: float
+) -> float:
+    """Return the standard deviation of noise that is cut off at ``rest``, 0 without any."""
+    ordered = in_order(seen)
+    steps = np.diff(ordered)
+    step = float(steps[steps > 0.0].min(initial=math.inf))
+    cells = np.ascontiguousarray(values, np.float64)
+    known = EVERY if usable is None else np.ascontiguousarray(usable)
+    return float(clipped_noise.call(cells, known, ordered, rest, step))
 
 
 def level_above(spread: float, base: float, peak: float) -> float:

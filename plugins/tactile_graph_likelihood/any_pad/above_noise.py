@@ -11,13 +11,11 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image, Mask, quick_mask
+from tactile_graph_filters.readings.clipped_noise import clipped_noise
+from tactile_graph_filters.readings.ordered import in_order
 from tactile_graph_likelihood.any_pad.clump import NEAR
-from tactile_graph_likelihood.any_pad.frame_noise import (
-    frame_noise,
-    in_order,
-    noise_of_sorted,
-)
-from tactile_graph_likelihood.any_pad.learned_pad import Taught, taught
+from tactile_graph_likelihood.any_pad.frame_noise import frame_noise, noise_of_sorted
+from tactile_graph_likelihood.any_pad.learned_pad import OfPad, Taught, taught
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.readings import LARGEST
 from tactile_graph_pads.pad import Pad, load_pad
@@ -188,6 +186,8 @@ def _rising_plain(
     if not np.abs(kept).max(initial=0.0) <= LARGEST:
         return False, 0.0, 0.0, 0, 0, 0.0, EVERY, np.zeros((0, 0))
     zero, sigma, step = noise_of_sorted.reference(sample)
+    if sigma == 0.0:
+        sigma = clipped_noise.reference(kept, known, sample, zero, step)
     least = max(deviations * sigma, 0.5 * step)
     above = kept - zero
     shows = above > least
@@ -212,6 +212,8 @@ def rising(values, known, sample, deviations, wanted):  # type: ignore[no-untype
     if unbounded > 0:
         return False, 0.0, 0.0, 0, 0, 0.0, shows, above
     zero, sigma, step = noise_of_sorted(sample)
+    if sigma == 0.0:
+        sigma = clipped_noise(values, known, sample, zero, step)
     least, most = max(deviations * sigma, 0.5 * step), 0.0
     for i in range(rows):
         for j in range(columns):
@@ -246,7 +248,7 @@ class Showing(NamedTuple):
 Showing.provides = {Mask: "mask"}  # type: ignore[attr-defined]
 
 
-class AboveNoise:
+class AboveNoise(OfPad):
     """Return the footprint of what rises above the noise in a frame.
 
     Parameters
@@ -260,7 +262,8 @@ class AboveNoise:
     Notes
     -----
     The zero and the noise are those of the frame's own closest quarter of readings, which is taken
-    to be untouched. ``level`` is the largest that any element must reach, in the image's unit.
+    to be untouched; where these are all the same and the least, the noise is what lies just above
+    (`clipped_noise`). ``level`` is the largest that any element must reach, in the image's unit.
     """
 
     stateless = True
@@ -271,7 +274,7 @@ class AboveNoise:
         pad: str | dict[str, Any] = "thesis",
         deviations: Annotated[float, Gt(0)] = SHOWS,
     ) -> None:
-        self._pad, self._deviations = load_pad(pad), deviations
+        self._pad, self._deviations = self._told(load_pad(pad)), deviations
 
     def __call__(self, image: Image) -> Showing:
         """Return the footprint, its level, how far it rises, and how many of it lie together.
@@ -283,6 +286,8 @@ class AboveNoise:
 
         Raises
         ------
+        RuleError
+            If a pad was learned, of another shape or quantity.
         ValueError
             If a valid cell is not finite or beyond 1e100.
         """

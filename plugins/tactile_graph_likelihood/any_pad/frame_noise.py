@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tactile_graph.compiled import compiled_twin_of
+from tactile_graph.compiled import compiled_later, compiled_twin_of
+from tactile_graph_filters.readings.ordered import in_order
 from tactile_graph_likelihood.geometry.outlines import Values
 
 UNTOUCHED = 0.25
@@ -17,11 +18,8 @@ WIDTH = 0.637
 """Of that stretch, in standard deviations of normal noise, were all of the frame untouched: where
 much is touched the noise comes out up to twice too large, never too small."""
 
-MOST = 4096
-"""Readings that are looked at, at the least, of a pad that has as many."""
-
 FEWEST = 4
-"""Readings below zero, for there to be any noise."""
+"""Readings below zero, for there to be any noise, or above the most that others read."""
 
 
 class FrameNoise(NamedTuple):
@@ -53,16 +51,10 @@ def frame_noise(readings: Values) -> FrameNoise:
     Notes
     -----
     The zero is the middle of the shortest stretch that holds a quarter of the readings; the noise
-    is what lies below it, and the stretch's own width.
+    is what lies below it, and the stretch's own width. Where that many read the same, hardly any
+    more, and as many less, these are saturated: the zero is then among the others.
     """
     return FrameNoise(*noise_of_sorted.call(in_order(readings)))
-
-
-def in_order(readings: Values) -> Values:
-    """Return readings in ascending order; of more than 4096 a part that is as good."""
-    values = readings[:: max(len(readings) // MOST, 1)].copy()
-    values.sort()
-    return values
 
 
 def _noise_plain(values: Values) -> tuple[float, float, float]:
@@ -76,6 +68,8 @@ def _noise_plain(values: Values) -> tuple[float, float, float]:
     many = max(int(UNTOUCHED * n), 1)
     widths = values[many - 1 :] - values[: n - many + 1]
     at = int(widths.argmin())
+    if at >= many and is_saturated(values, at, many):
+        at = int(widths[: at - many + 1].argmin())
     zero = 0.5 * float(values[at] + values[at + many - 1])
     below = zero - values[: int(values.searchsorted(zero))]
     if len(below) < FEWEST:
@@ -103,6 +97,13 @@ def noise_of_sorted(values):  # type: ignore[no-untyped-def]
         its = values[i + many - 1] - values[i]
         if its < width:
             at, width = i, its
+    if at >= many and is_saturated(values, at, many):
+        rest = at - many + 1
+        at, width = 0, values[many - 1] - values[0]
+        for i in range(1, rest):
+            its = values[i + many - 1] - values[i]
+            if its < width:
+                at, width = i, its
     zero = 0.5 * (values[at] + values[at + many - 1])
     below, total = 0, 0.0
     while below < n and values[below] < zero:
@@ -111,3 +112,10 @@ def noise_of_sorted(values):  # type: ignore[no-untyped-def]
     if below < FEWEST:
         return zero, 0.0, step
     return zero, max(math.sqrt(total / below), width / WIDTH), step
+
+
+@compiled_later
+def is_saturated(values: Values, at: int, many: int) -> bool:
+    """Return whether ``many`` readings from ``at`` on are all the same and hardly any is larger."""
+    n = values.shape[0]
+    return bool(values[at] == values[at + many - 1] and values[max(n - FEWEST, at)] == values[at])

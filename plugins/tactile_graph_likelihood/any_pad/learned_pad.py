@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.errors import RuleError
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -53,26 +54,65 @@ class Taught(NamedTuple):
     stuck: NDArray[np.bool_]
 
 
+PAD_HINT = "the pad says nothing of other readings: leave it out, or say what the values are"
+
+
 def taught(pad: Pad, image: Image) -> Taught | None:
-    """Return what recordings have taught about an image's elements; None where they have nothing.
+    """Return what recordings have taught about an image's elements; None of a pad not learned.
 
     Parameters
     ----------
     pad : Pad
         Its section ``learned`` is asked, if it has one.
     image : Image
-        As recorded, or in siemens or grams made of that. Of images of another shape or quantity
-        nothing is known.
+        As recorded, or in siemens or grams made of that.
+
+    Raises
+    ------
+    RuleError
+        If the image has another shape than the pad, or a quantity the pad says nothing of.
     """
     learned = pad.learned
-    if learned is None or image.shape != (learned.rows, learned.columns):
+    if learned is None:
         return None
-    known = {learned.reading, learned.gain_of}
-    if learned.reading in ("volt", "counts"):
-        known |= {"siemens", "gram"}
+    if image.shape != (learned.rows, learned.columns):
+        rows, columns = image.shape
+        raise RuleError(
+            f"the pad was learned with {learned.rows} x {learned.columns} elements, got "
+            f"{rows} x {columns}: take the pad that was learned from such recordings, or none"
+        )
+    known = known_quantities(pad)
     if image.quantity not in known:
-        return None
+        raise RuleError(
+            f"the pad was learned from readings in {learned.reading}, got {image.quantity}; "
+            f"{PAD_HINT}"
+        )
     return _of_elements(learned, image.quantity)
+
+
+def known_quantities(pad: Pad) -> tuple[str, ...]:
+    """Return the quantities of images that a learned pad says something of; none of any other."""
+    learned = pad.learned
+    if learned is None:
+        return ()
+    known: list[str] = [learned.reading, learned.gain_of or learned.reading]
+    if learned.reading in ("volt", "counts"):
+        known += ["siemens", "gram"]
+    if learned.curve:
+        known.append("gram")
+    return tuple(dict.fromkeys(known))
+
+
+class OfPad:
+    """A step that is told a pad, and takes images that the pad says something of."""
+
+    takes_by, takes_hint = "pad", PAD_HINT
+
+    def _told(self, pad: Pad) -> Pad:
+        """Take note of a pad and return it."""
+        known = known_quantities(pad)
+        self.takes = {"image": known} if known else {}
+        return pad
 
 
 def _of_elements(learned: Learned, quantity: str) -> Taught:

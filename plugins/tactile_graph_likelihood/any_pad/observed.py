@@ -27,7 +27,11 @@ SAME = 0.02
 """Of a pitch: by how much it may differ from the pad's and be taken for it."""
 
 NEARLY = 0.03
-"""Of a cell's width, by which its height may differ: sizes come out wrong by half of that."""
+"""Of a cell's longer side, by which the other may be shorter: sizes come out wrong by half of
+that."""
+
+ROUNDING = 1e-9
+"""Of a side, by which numbers may have been rounded."""
 
 UNIFORM = np.array([OFF, ON, UNKNOWN, OFF, ON], np.uint8)
 """What states come to where all elements show from the same load: `UNDER` and `OVER` are none."""
@@ -60,15 +64,18 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     Raises
     ------
     RuleError
-        If the cells are not nearly square, or the gap leaves no element.
+        If the cells are not nearly square, the gap leaves no element, or the pad was learned, of
+        another shape or quantity.
     DataError
         If a valid cell is not finite or beyond 1e100.
     Degenerate
         If nothing shows.
     """
     across, down = image.pitch_cm
-    if abs(across - down) > NEARLY * across:
-        raise RuleError(f"needs nearly square cells, got a pitch of {across:g} by {down:g} cm")
+    if abs(across - down) > (NEARLY + ROUNDING) * max(across, down):
+        raise RuleError(
+            f"needs cells that are square to {NEARLY:.0%}, got a pitch of {across:g} by {down:g} cm"
+        )
     if gap_cm is None:
         gap_cm = pad.geometry.gap_cm if abs(across - pad.geometry.pitch_cm) < SAME * across else 0.0
     grid = grid_of(image, gap_cm)

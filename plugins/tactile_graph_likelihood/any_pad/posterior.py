@@ -135,14 +135,15 @@ def within(found: AnyPadPosterior, smallest_cm: float, largest_cm: float) -> Any
 
 
 def stretched(found: AnyPadPosterior, readings: Readings) -> AnyPadPosterior:
-    """Return a posterior on cells that are as high as they are, not as high as they are wide."""
-    top_cm, stretch = float(readings.grid[1]), readings.stretch
-    if stretch == 1.0:
+    """Return a posterior at its place on cells as wide and high as they are, not on square ones."""
+    if readings.stretch == 1.0:
         return found
     mean, points, likeliest = found.mean.copy(), found.points.copy(), found.most_likely.copy()
-    covariance = found.covariance.copy()
-    for y in (mean[1:2], points[:, 1], likeliest[1:2]):
-        y += (stretch - 1.0) * (y - top_cm)
-    covariance[1] *= stretch
-    covariance[:, 1] *= stretch
+    covariance, root = found.covariance.copy(), math.sqrt(readings.stretch)
+    for axis, factor in enumerate((1.0 / root, root)):
+        begin_cm = float(readings.grid[axis])
+        for along in (mean[axis : axis + 1], points[:, axis], likeliest[axis : axis + 1]):
+            along += (factor - 1.0) * (along - begin_cm)
+        covariance[axis] *= factor
+        covariance[:, axis] *= factor
     return changed(found, mean=mean, points=points, most_likely=likeliest, covariance=covariance)

@@ -54,7 +54,8 @@ class Readings(NamedTuple):
 
     ``grid`` holds left and top edge of the first element, pitch and side of an element, and two
     zeros (a search's own); ``logs`` and ``states`` are as in `element_terms`. ``stretch`` is the
-    height of a cell over its width, where it is nearly 1 and was taken for that; ``least_log`` the
+    height of a cell over its width, where it is nearly 1 and was taken for that, cells being as
+    large as they are; ``least_log`` the
     logarithm of the least load that shows, where the readings themselves say it; ``turn_on`` what
     is told of the law there, where readings are by one.
     """
@@ -138,14 +139,15 @@ def _loaded(values: Values, least: float, logs: Values, states: States) -> float
 
 
 def grid_of(image: Image, gap_cm: float) -> Values:
-    """Return where an image's elements lie, as `Readings` has it.
+    """Return where an image's elements lie, as `Readings` has it, in square cells as large as its.
 
     Raises
     ------
     RuleError
         If the gap between elements leaves none.
     """
-    (x, y), pitch, half = image.origin_cm, image.pitch_cm[0], 0.5 * gap_cm
+    (x, y), (across, down), half = image.origin_cm, image.pitch_cm, 0.5 * gap_cm
+    pitch = across if across == down else math.sqrt(across * down)
     if not gap_cm < pitch:
         raise RuleError(f"gap_cm: must be below the pitch of {pitch:g} cm, got {gap_cm:g}")
     return np.array([x + half, y + half, pitch, pitch - gap_cm, 0.0, 0.0])

@@ -29,3 +29,17 @@ def test_cells_that_are_not_read_say_nothing():
     assert lower_readings(image_of(values, valid=valid)) == lower_readings(rest)
     assert lower_readings(image_of(values, valid=np.zeros((6, 7)))) is None
     assert noise_level(image_of(values, valid=np.zeros((6, 7)))) == math.inf
+
+
+@pytest.mark.parametrize("noise", [0.3, 1.0, 3.0])
+def test_noise_that_is_cut_off_at_zero_is_not_reached_either(noise):
+    rng = np.random.default_rng(2)
+    for _ in range(10):
+        empty = np.maximum(np.round(rng.normal(0.0, noise, (16, 16))), 0.0)
+        assert noise_level(image_of(empty)) > empty.max()
+
+
+def test_loads_on_a_pad_that_truly_reads_nothing_are_reached():
+    values = np.zeros((16, 16))
+    values[4:9, 5:11] = np.random.default_rng(3).integers(2, 9, (5, 6))
+    assert noise_level(image_of(values)) == pytest.approx(0.03 * values.max())

@@ -6,8 +6,8 @@ import pytest
 from helpers_modes import held, plainly
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image
+from tactile_graph_filters.readings.ordered import in_order
 from tactile_graph_likelihood.any_pad.above_noise import EVERY, SHOWS, AboveNoise, risen, rising
-from tactile_graph_likelihood.any_pad.frame_noise import in_order
 from tactile_graph_pads.pad import load_pad
 
 PAD = load_pad("thesis")
@@ -37,6 +37,13 @@ def test_plain_code_loops_and_machine_code_answer_to_the_bit(shape, share, wrong
         known = held(rng.random(shape) < share)
     values = held(values)
     sample = in_order(values.ravel() if share is None else values[known])
+    check_alike(values, known, sample)
+    if wrong is None:
+        clipped = held(np.maximum(values, 0.0))
+        check_alike(clipped, known, in_order(clipped.ravel() if share is None else clipped[known]))
+
+
+def check_alike(values, known, sample):
     given = values, known, sample, SHOWS, True
     ways = [way(*given) for way in (rising.reference, plainly(rising), rising.compiled)]
     for way in ways[1:]:
@@ -84,3 +91,20 @@ def test_whole_numbers_and_single_precision_are_read_as_they_are():
         found = AboveNoise()(image_of(counts.astype(kind)))
         assert found[1:] == as_double[1:]
         np.testing.assert_array_equal(found.mask.values, as_double.mask.values)
+
+
+@pytest.mark.parametrize("noise", [0.3, 1.0, 3.0])
+def test_an_empty_pad_of_a_device_that_clips_is_not_touched(noise):
+    rng = np.random.default_rng(7)
+    for _ in range(10):
+        values = np.maximum(np.round(rng.normal(0.0, noise, (16, 16))), 0.0)
+        found = AboveNoise()(Image(values, (1.0, 1.0), (0.0, 0.0), "counts"))
+        assert found.together <= 3
+        assert found.rise <= 1.5
+
+
+def test_what_saturates_on_a_quarter_of_the_pad_shows():
+    values = np.round(np.random.default_rng(8).normal(10.0, 1.5, (16, 16)))
+    values[3:12, 4:13] = 255.0
+    found = AboveNoise()(Image(values, (1.0, 1.0), (0.0, 0.0), "counts"))
+    assert np.array_equal(found.mask.values, values == 255.0)

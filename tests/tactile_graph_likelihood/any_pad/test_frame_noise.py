@@ -4,11 +4,8 @@ import numpy as np
 import pytest
 
 from helpers_modes import plainly
-from tactile_graph_likelihood.any_pad.frame_noise import (
-    frame_noise,
-    in_order,
-    noise_of_sorted,
-)
+from tactile_graph_filters.readings.ordered import in_order
+from tactile_graph_likelihood.any_pad.frame_noise import frame_noise, noise_of_sorted
 
 
 def readings(rng, touched, sigma=2e-3, zero=0.0):
@@ -42,6 +39,24 @@ def test_a_frame_without_noise_has_none():
     assert frame_noise(values)[:2] == (0.0, 0.0)
 
 
+@pytest.mark.parametrize("saturated", [64, 90, 150])
+@pytest.mark.parametrize("beyond", [0, 3])
+def test_the_end_of_the_range_is_no_zero(saturated, beyond):
+    rng = np.random.default_rng(3)
+    values = np.round(rng.normal(10.0, 1.5, 256))
+    values[:saturated] = 255.0
+    values[:beyond] = 300.0
+    found = frame_noise(values)
+    assert found.zero == pytest.approx(10.0, abs=1.0)
+    assert 0.6 * 1.5 < found.sigma < 2.5 * 1.5
+
+
+def test_a_zero_that_hardly_any_reading_exceeds_is_one():
+    values = np.full(256, 20.0)
+    values[:60] = np.random.default_rng(4).uniform(0.0, 19.0, 60)
+    assert frame_noise(values).zero == 20.0
+
+
 def test_of_a_large_pad_a_part_is_enough():
     rng = np.random.default_rng(2)
     assert frame_noise(2e-3 * rng.standard_normal(65536)).sigma == pytest.approx(2e-3, rel=0.1)
@@ -50,6 +65,7 @@ def test_of_a_large_pad_a_part_is_enough():
 @pytest.mark.parametrize("n", [0, 1, 3, 4, 5, 9, 256, 5000])
 def test_noise_is_told_alike_in_loops(n):
     rng = np.random.default_rng(n)
-    for values in (rng.standard_normal(n), np.round(rng.standard_normal(n)), np.zeros(n)):
+    normal = rng.standard_normal(n)
+    for values in (normal, np.round(normal), np.zeros(n), np.minimum(normal, 0.0)):
         ordered = in_order(values)
         assert plainly(noise_of_sorted)(ordered) == noise_of_sorted.reference(ordered)

@@ -9,10 +9,18 @@ import numpy as np
 import pytest
 import yaml
 
+from helpers_cli import call
+from tactile_graph.errors import RuleError
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.above_noise import AboveNoise
 from tactile_graph_likelihood.any_pad.choose import Locate
-from tactile_graph_likelihood.any_pad.learned_pad import Placing, at, taught, unevenness_left
+from tactile_graph_likelihood.any_pad.learned_pad import (
+    Placing,
+    at,
+    known_quantities,
+    taught,
+    unevenness_left,
+)
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, LocateDisc
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.single.element_terms import UNKNOWN
@@ -79,12 +87,36 @@ def test_offsets_say_nothing_of_grams_made_of_the_volts_but_bad_elements_stay_ba
     assert its.stuck.sum() == 2
 
 
-def test_of_images_of_another_shape_or_quantity_nothing_is_known(pad):
-    small = Image(np.zeros((2, 2)), (1.3, 1.3), (0.0, 0.0), "volt")
+def test_images_of_another_shape_or_quantity_are_refused(pad):
+    small = Image(np.zeros((2, 3)), (1.3, 1.3), (0.0, 0.0), "volt")
     raw = Image(np.zeros((16, 16)), (1.3, 1.3), (0.0, 0.0), "raw")
-    assert taught(load_pad(pad), small) is None
-    assert taught(load_pad(pad), raw) is None
+    steps = AboveNoise(pad=pad), LocateDisc(settings=replace(ANY_PAD, pad=pad))
+    for step in (*steps, Locate(settings=replace(ANY_PAD, pad=pad))):
+        with pytest.raises(RuleError, match="learned with 16 x 16 elements, got 2 x 3"):
+            step(small)
+        with pytest.raises(RuleError, match="learned from readings in volt, got raw"):
+            step(raw)
+        assert step.takes == {"image": ("volt", "siemens", "gram")}
     assert taught(load_pad("thesis"), raw) is None
+    assert AboveNoise().takes == {}
+
+
+def test_a_pad_with_a_learned_curve_knows_its_grams(tmp_path, bench):
+    more = {"reading": "raw", "curve": [[0.0, 0.0], [5.0, 900.0]]}
+    pad = load_pad(written(tmp_path, bench, **more))
+    assert known_quantities(pad) == ("raw", "gram")
+    grams = Image(np.zeros((16, 16)), (1.3, 1.3), (0.0, 0.0), "gram")
+    assert taught(pad, grams).stuck.sum() == 2
+
+
+def test_a_quantity_that_the_pad_says_nothing_of_is_told_before_the_first_frame(tmp_path, bench):
+    path = written(tmp_path, bench)
+    np.savez(tmp_path / "r.npz", values=np.zeros((2, 16, 16)), pitch_cm=[1.3, 1.3], quantity="raw")
+    told = call("run", "locate-circle", tmp_path / "r.npz", "--set", f"circle.pad={path}")
+    assert told.exit_code != 0
+    assert "setting 'pad' of step 'locate_disc' takes volt or siemens or gram" in told.output
+    assert "leave it out, or say what the values are" in told.output
+    assert "traceback" not in told.output.lower()
 
 
 def test_stuck_elements_are_unknown_and_show_no_touch(pad, bench):

@@ -325,6 +325,7 @@ def test_cells_that_are_nearly_square_lie_where_they_lie():
     lower = LocateDisc()(Image(counts, (0.5, 0.49), (0.0, 0.0), "counts"))
     assert lower.x_cm == pytest.approx(square.x_cm)
     assert lower.y_cm == pytest.approx(0.98 * square.y_cm)
+    assert lower.radius_cm == pytest.approx(math.sqrt(0.98) * square.radius_cm)
     assert lower.posterior.contains(Circle(4.0, 24.0 * 0.49, 2.0))
 
 
@@ -393,3 +394,28 @@ def test_an_outline_lies_on_the_pad_mostly():
     }
     assert logs["mostly"].mean[:3] == pytest.approx(logs["whole"].mean[:3], abs=0.05)
     assert logs["partly"].mean[:3] == pytest.approx(logs["whole"].mean[:3], abs=0.15)
+
+
+def counted(rng, circle, load):
+    """Return an image of whole counts, of noise 1, of a disc on a pad of 16 x 16 cells of 1 cm."""
+    points = (np.arange(16 * 9) + 0.5) / 9.0
+    inside = np.hypot(points - circle.x_cm, points[:, None] - circle.y_cm) < circle.radius_cm
+    share = inside.reshape(16, 9, 16, 9).mean(axis=(1, 3))
+    loads = load * share * np.exp(rng.normal(0.0, 0.3, (16, 16)))
+    return np.round(rng.standard_normal((16, 16)) + loads)
+
+
+@pytest.mark.slow
+@many
+@pytest.mark.parametrize(
+    ("lowest", "highest", "load"), [(0.0, 65535.0, 300.0), (-99.0, 255.0, 3000.0)]
+)
+def test_a_device_that_ends_at_zero_or_saturates_costs_hardly_anything(lowest, highest, load):
+    rng, step = np.random.default_rng(9), LocateDisc()
+    true, errors = Circle(8.2, 7.7, 4.9), []
+    for _ in range(8):
+        values = np.clip(counted(rng, true, load), lowest, highest)
+        found = step(Image(values, (1.0, 1.0), (0.0, 0.0), "counts"))
+        centre = math.hypot(found.x_cm - true.x_cm, found.y_cm - true.y_cm)
+        errors.append((centre, abs(found.radius_cm - true.radius_cm)))
+    assert np.mean(errors, axis=0).max() < 0.15

@@ -91,6 +91,24 @@ def test_elements_have_no_gap_where_the_pitch_is_not_the_pads():
     assert observed(image_of(values), PAD).grid[3] == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize(("short", "long"), [(1.0, 1.03), (0.97, 1.0), (0.1, 0.103), (2.91, 3.0)])
+def test_cells_may_be_wider_or_higher_alike(short, long):
+    values, _ = volts(np.random.default_rng(6))
+    high, wide = (
+        observed(Image(values, pitch, (3.0, 5.0), "raw"), PAD)
+        for pitch in ((short, long), (long, short))
+    )
+    assert high.grid[2] == wide.grid[2] == pytest.approx(math.sqrt(short * long))
+    assert high.stretch == pytest.approx(1.0 / wide.stretch)
+    assert tuple(high.grid[:2]) == tuple(wide.grid[:2]) == (3.0, 5.0)
+
+
+@pytest.mark.parametrize("pitch_cm", [(1.0, 1.032), (1.032, 1.0), (1.0, 0.968)])
+def test_cells_that_are_less_square_are_refused_either_way(pitch_cm):
+    with pytest.raises(RuleError, match="square to 3%"):
+        observed(Image(np.eye(8), pitch_cm, (0.0, 0.0), "raw"), PAD)
+
+
 @pytest.mark.parametrize(
     ("image", "gap_cm", "error", "said"),
     [
@@ -98,7 +116,7 @@ def test_elements_have_no_gap_where_the_pitch_is_not_the_pads():
             Image(np.ones((4, 4)), (1.0, 2.0), (0.0, 0.0), "raw"),
             None,
             RuleError,
-            "nearly square cells",
+            "needs cells that are square to 3%, got a pitch of 1 by 2 cm",
         ),
         (image_of(np.ones((4, 4))), 1.3, RuleError, "gap_cm: must be below the pitch"),
         (image_of(np.full((4, 4), 1e101)), None, DataError, "must be finite and at most"),

@@ -1,0 +1,103 @@
+"""Noise whose lower half no device tells, and loads on a pad that truly reads nothing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from helpers_modes import plainly
+from tactile_graph_filters.readings.clipped_noise import clipped_noise, is_anywhere
+
+pytestmark = pytest.mark.usefixtures("plain_kernels")
+
+EVERY = np.zeros((0, 0), np.bool_)
+NOISES = [0.3, 0.5, 1.0, 3.0]
+
+
+def given(values: np.ndarray, known: np.ndarray = EVERY, rest: float = 0.0) -> tuple:
+    sample = np.sort(values[known] if known.size else values, axis=None)
+    steps = np.diff(sample)
+    return values, known, sample, rest, float(steps[steps > 0.0].min(initial=np.inf))
+
+
+def noise_of(values: np.ndarray, known: np.ndarray = EVERY, rest: float = 0.0) -> float:
+    return clipped_noise.reference(*given(values, known, rest))
+
+
+def disc(radius: float, shape: tuple[int, int] = (16, 16)) -> np.ndarray:
+    """Return the share of each cell that a disc covers, in the middle of a pad."""
+    y, x = ((np.arange(5 * n) + 0.5) / 5.0 - n / 2.0 for n in shape)
+    inside = x**2 + y[:, None] ** 2 < radius**2
+    return inside.reshape(shape[0], 5, shape[1], 5).mean(axis=(1, 3))
+
+
+def counts(rng: np.random.Generator, noise: float, radius: float = 0.0) -> np.ndarray:
+    loads = 300.0 * disc(radius) * np.exp(rng.normal(0.0, 0.4, (16, 16)))
+    return np.maximum(np.round(rng.normal(0.0, noise, (16, 16)) + loads), 0.0)
+
+
+@pytest.mark.parametrize("noise", NOISES)
+@pytest.mark.parametrize("radius", [0.0, 2.5, 4.5])
+def test_noise_that_is_cut_off_is_told_by_what_is_left_of_it(noise: float, radius: float) -> None:
+    rng = np.random.default_rng(1)
+    found = np.array([noise_of(counts(rng, noise, radius)) for _ in range(20)])
+    assert np.count_nonzero(found == 0.0) <= 1
+    assert np.median(found) == pytest.approx(noise, rel=0.2)
+    assert found.max() < 1.6 * noise
+
+
+def test_so_is_noise_without_steps_or_around_another_value() -> None:
+    rng = np.random.default_rng(2)
+    values = np.maximum(rng.normal(7.0, 2.0, (16, 16)), 7.0)
+    assert noise_of(values, rest=7.0) == pytest.approx(2.0, rel=0.1)
+
+
+def test_readings_that_lie_between_two_steps_are_noise_of_about_one() -> None:
+    values = np.round(np.random.default_rng(3).normal(20.5, 0.3, (16, 16)))
+    assert noise_of(values, rest=20.0) == pytest.approx(1.0, rel=0.1)
+
+
+@pytest.mark.parametrize("radius", [1.5, 3.0, 5.0, 7.0])
+@pytest.mark.parametrize("steps", [1.0, 4.0, 300.0])
+@pytest.mark.parametrize("gains", [0.0, 0.5])
+def test_loads_on_a_pad_that_truly_reads_nothing_all_stand_out_of_noise(
+    radius: float, steps: float, gains: float
+) -> None:
+    rng = np.random.default_rng(4)
+    loads = steps * disc(radius) * np.exp(rng.normal(0.0, gains, (16, 16)))
+    loads[rng.random((16, 16)) < 0.15] = 0.0
+    for values in (loads, np.round(loads)):
+        assert 4.0 * noise_of(values) < values[values > 0.0].min()
+
+
+def test_too_few_readings_tell_nothing() -> None:
+    values = counts(np.random.default_rng(5), 1.0)
+    assert noise_of(values[:6, :9]) == 0.0
+    lone = np.zeros((16, 16))
+    lone[2, 3] = lone[9, 9] = lone[14, 1] = 2.0
+    assert noise_of(lone) == 0.0
+
+
+def test_cells_that_do_not_count_say_nothing() -> None:
+    values = counts(np.random.default_rng(6), 1.0)
+    known = np.ones((16, 16), np.bool_)
+    known[5:7] = False
+    other = values.copy()
+    other[5], other[6] = 2.0, np.nan
+    assert noise_of(other, known) == noise_of(values, known) > 0.0
+
+
+@pytest.mark.parametrize("shape", [(0, 0), (1, 3), (1, 200), (16, 16), (40, 30)])
+def test_noise_is_told_alike_in_loops(shape: tuple[int, int]) -> None:
+    rng = np.random.default_rng(7)
+    known = rng.random(shape) < 0.8
+    for values in (
+        np.maximum(rng.standard_normal(shape), 0.0),
+        np.maximum(np.round(rng.standard_normal(shape)), 0.0),
+        np.round(3.0 * disc(0.3 * shape[0], shape)) if shape[0] else np.zeros(shape),
+    ):
+        for cells in (EVERY, known):
+            args = given(values, cells)
+            assert plainly(clipped_noise)(*args) == clipped_noise.reference(*args)
+            near = values, cells, 0.0, 1.0
+            assert plainly(is_anywhere)(*near) == is_anywhere.reference(*near)
