@@ -141,8 +141,8 @@ class _Bench:
         except Irregular as why:
             return Done(irregular=str(why) or "frames that cannot be read on their own")
         tally.outputs = []  # columns hold functions, and who asked knows them
-        why = ended[0] if ended else None
-        return Done(tally.n, part[0], tally, frozenset(quantities), error=why)
+        trouble = ended[0] if ended else None
+        return Done(tally.n, part[0], tally, frozenset(quantities), error=trouble)
 
     def _results(self, portion: Portion) -> Iterator[Result | Block[Result]]:
         if self.runner.stateful:

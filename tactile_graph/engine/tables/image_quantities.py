@@ -49,6 +49,8 @@ def told_of(graph: Graph, ref: Ref) -> Told:
         return _of_choices(graph, node, [_further(choice, ref) for choice in node.choices])
     if node.kind is NodeKind.MAP and node.inner is not None:
         return _of_each(graph, node, node.inner, ref)
+    if node.kind is NodeKind.GIVEN:
+        return UNKNOWN
     promised = node.facts.by_frame
     settled = any(promised.values()) or _is_image(_kind_at(graph, Ref(ref.node)))
     measured = promised if settled else _read(graph, node)
@@ -139,10 +141,15 @@ def _kind_at(graph: Graph, ref: Ref) -> Any:
     """Return the type of the value at a reference, or of its items where it is a list."""
     kind = graph.type_of(Ref(ref.node, ref.path))
     item = list_item(kind)
-    kind = kind if item is None else item
+    kind = _known(kind if item is None else item)
     for name in ref.item_path:
-        kind = public_fields(arms(kind)[0]).get(name, Any)
-    return arms(kind)[0]
+        kind = _known(public_fields(kind).get(name, Any))
+    return kind
+
+
+def _known(kind: Any) -> Any:
+    """Return the first arm of a type that is a value's."""
+    return next((arm for arm in arms(kind) if arm is not type(None)), kind)
 
 
 def _is_measured_view(graph: Graph, ref: Ref) -> bool:
