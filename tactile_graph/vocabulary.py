@@ -55,9 +55,16 @@ UNITS = Vocabulary()
 
 
 def words_and_unit(name: str) -> tuple[str, str]:
-    """Return a field's words and its unit: ``("radius", "cm")`` of ``radius_cm``."""
+    """Return a field's words and its unit: ``("radius", "cm")`` of ``radius_cm``.
+
+    A unit before the unit is what there is per that: ``("pressure", "N/cm²")`` of
+    ``pressure_n_cm2``, unless somebody offers both together as a unit of its own.
+    """
     for n_words in (2, 1):  # vx_cm_s is in cm_s, not in s
         head, *tail = name.rsplit("_", n_words)
         if head and tail and (unit := UNITS.get("_".join(tail), "")):
+            words, _, before = head.rpartition("_")
+            if words and (of := UNITS.get(before, "")):
+                return words.replace("_", " "), f"{of}/{unit}"
             return head.replace("_", " "), unit
     return name.replace("_", " "), ""

@@ -45,7 +45,8 @@ class Results(Iterator[Result]):
         Returns
         -------
         pandas.DataFrame
-            ``attrs["units"]`` holds the unit of each column of numbers, ``1`` for bare ones.
+            ``attrs["units"]`` holds the unit of each column of numbers: ``1`` for bare ones, ""
+            where nobody knows it or frames differ in it.
 
         Raises
         ------
@@ -60,10 +61,10 @@ class Results(Iterator[Result]):
 
         table = make_table(self._pipeline, self._asked, long)
         rows: list[dict[str, Any]] = []
-        quantity = "raw"
+        quantities: set[str] = set()
         for result in self:
-            quantity = result.frame.image.quantity
+            quantities.add(result.frame.image.quantity)
             rows += table.rows(result)
         found = pd.DataFrame(rows, columns=[column.key for column in table.columns])
-        found.attrs["units"] = units_of(table, quantity)
+        found.attrs["units"] = units_of(table, quantities)
         return found

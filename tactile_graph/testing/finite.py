@@ -15,8 +15,8 @@ from tactile_graph.wires import Image, Mask, Points
 def not_finite(value: Any) -> str:
     """Return which part of an answer is NaN or infinite, in words; "" where none is.
 
-    What a record keeps for itself (``_name``) is no answer, and the values of invalid cells count
-    for nothing.
+    What a record keeps for itself (``_name``) is no answer, and the values of invalid and of masked
+    cells count for nothing.
     """
     for path, number in numbers(value, ""):
         where = path.lstrip(".") or "the answer"
@@ -35,7 +35,7 @@ def numbers(value: Any, path: str) -> Iterator[tuple[str, Any]]:
         yield path, float(value)
     elif isinstance(value, np.ndarray):
         if value.dtype.kind == "f":
-            yield path, value
+            yield path, value.compressed() if isinstance(value, np.ma.MaskedArray) else value
     elif isinstance(value, Image | Mask):
         yield f"{path}.values", value.filled() if isinstance(value, Image) else value.values
         yield f"{path}.pitch_cm", np.asarray(value.pitch_cm, dtype=np.float64)

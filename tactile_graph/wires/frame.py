@@ -95,8 +95,9 @@ class Frame:
     ) -> Frame:
         """Return a frame around a copy of ``values``, shape (rows, columns).
 
-        Cells that are NaN, infinite or beyond 1e100 become invalid and hold 0; squares of larger
-        ones are no numbers any more. Those nearer to 0 than 1e-100 hold 0 for the same reason.
+        Cells that are NaN, infinite, beyond 1e100 or masked (of a NumPy masked array) become
+        invalid and hold 0; squares of larger ones are no numbers any more. Those nearer to 0 than
+        1e-100 hold 0 for the same reason.
 
         Raises
         ------
@@ -150,12 +151,15 @@ class Frame:
 
 
 def _real(values: NDArray[Any]) -> NDArray[np.float64]:
-    """Return a copy as float64; errors as of `Frame.of`."""
+    """Return a copy as float64, NaN in masked cells; errors as of `Frame.of`."""
     given = np.asarray(values)
     if given.dtype.kind not in "biufO" or (given.dtype.kind == "O" and np.iscomplexobj(given)):
         raise ValueError(f"a frame takes real numbers, got {given.dtype.name}")
     try:
         with np.errstate(over="ignore"):  # of a longer float than this: it becomes invalid
-            return np.array(given, dtype=np.float64)
+            copy = np.array(given, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise ValueError(f"a frame takes real numbers: {error}") from None
+    if isinstance(values, np.ma.MaskedArray):
+        copy[np.ma.getmaskarray(values)] = np.nan
+    return copy

@@ -29,6 +29,19 @@ def cells_of(words: NDArray[np.uint64], columns: int) -> NDArray[np.bool_]:
     return np.unpackbits(raw, axis=-1, count=columns, bitorder="little").view(np.bool_)
 
 
+def unmasked(
+    values: NDArray[Any], valid: NDArray[np.bool_] | None
+) -> tuple[NDArray[Any], NDArray[np.bool_] | None]:
+    """Return the values of a masked array as a plain one; its masked cells are invalid, and 0."""
+    if not isinstance(values, np.ma.MaskedArray):
+        return values, valid
+    there = ~np.ma.getmaskarray(values)
+    if not there.all():
+        valid = there if valid is None else valid & there
+    plain: NDArray[Any] = values.filled(0)
+    return plain, valid
+
+
 class _Gridded:
     """What images and masks share: cells of ``pitch_cm`` from ``origin_cm`` on."""
 
@@ -94,7 +107,7 @@ class Image(_Gridded):
     ----------
     values : ndarray, shape (rows, columns)
         One number per cell; row 0 is the top of the pad. Half and quadruple precision, which no
-        machine code takes, becomes double.
+        machine code takes, becomes double. Masked cells of a masked array become invalid.
     pitch_cm : (float, float)
         Distance of neighbouring cells along x and y.
     origin_cm : (float, float)
@@ -121,6 +134,8 @@ class Image(_Gridded):
         quantity: str = "raw",
         valid: NDArray[np.bool_] | None = None,
     ) -> None:
+        if values.__class__ is not np.ndarray:
+            values, valid = unmasked(values, valid)
         if values.itemsize not in _USUAL_BYTES:
             values = _taken_by_machine_code(values)
         values.setflags(False)  # type: ignore[call-arg]  # by keyword it takes twice as long
@@ -193,6 +208,7 @@ class Mask(_Gridded):
     Parameters
     ----------
     values : ndarray of bool, shape (rows, columns)
+        Masked cells of a masked array are off.
     pitch_cm, origin_cm : (float, float)
         As in `Image`.
     count : int, optional
@@ -215,6 +231,8 @@ class Mask(_Gridded):
         origin_cm: tuple[float, float] = (0.0, 0.0),
         count: int | None = None,
     ) -> None:
+        if values.__class__ is not np.ndarray:
+            values, _ = unmasked(values, None)
         values.setflags(False)  # type: ignore[call-arg]
         _set_cells(self, values)
         _set_pitch(self, pitch_cm)
@@ -328,7 +346,8 @@ def quick_image(
 ) -> Image:
     """Return ``Image(values, pitch_cm, origin_cm, quantity, valid)`` in half the time.
 
-    Values must be whole numbers or of single or double precision: others are not made double.
+    Values must be whole numbers or of single or double precision: others are not made double. The
+    array is a plain one: no cells of it are masked.
     """
     values.setflags(False)  # type: ignore[call-arg]
     if valid is not None:

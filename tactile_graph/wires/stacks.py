@@ -15,7 +15,7 @@ from typing import Any, ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.wires.image import Image, Mask, cells_of
+from tactile_graph.wires.image import Image, Mask, cells_of, unmasked
 from tactile_graph.wires.points import Points
 from tactile_graph.wires.shapes import Polygon
 
@@ -165,6 +165,7 @@ class ImageStack(_OnGrid):
         valid: NDArray[np.bool_] | None = None,
         images: Sequence[Image] | None = None,
     ) -> None:
+        values, valid = unmasked(values, valid)
         self.values = _frozen(values)
         self.pitch_cm, self.origin_cm, self.quantity = pitch_cm, origin_cm, quantity
         self.valid = None if valid is None else _frozen(valid)

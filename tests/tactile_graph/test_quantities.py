@@ -48,3 +48,19 @@ def test_words_are_a_mapping_of_what_was_entered() -> None:
 def test_a_units_name_alone_is_no_field_of_it() -> None:
     assert words_and_unit("cm") == ("cm", "")
     assert words_and_unit("vx_cm_s") == ("vx", "cm/s")
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("pressure_n_cm2", ("pressure", "N/cm²")),
+        ("speed_mm_s", ("speed", "mm/s")),
+        ("gain_v_g", ("gain", "V/g")),
+        ("mean_load_g_cm2", ("mean load", "g/cm²")),
+        ("turn_deg_s", ("turn", "°/s")),
+        ("n_s", ("n", "s")),
+        ("left_cm", ("left", "cm")),
+    ],
+)
+def test_a_unit_before_the_unit_is_that_per_it(name: str, expected: tuple[str, str]) -> None:
+    assert words_and_unit(name) == expected

@@ -182,7 +182,7 @@ class _Run:
     decisions: Path | None = None
     interrupted: KeyboardInterrupt | None = None
     form_of_table: Table | None = None
-    quantity: str = "raw"
+    quantities: set[str] = field(default_factory=set)
     last_frame_s: float = field(default_factory=time.monotonic)
     n_stalled: int = 0
     error: Exception | None = None
@@ -333,7 +333,7 @@ class _Run:
         self.bar.at(self.tally.n, self.span.expected(self.report.n_expected))
 
     def _one(self, result: Result) -> None:
-        self.quantity = result.frame.image.quantity
+        self.quantities.add(result.frame.image.quantity)
         if self.lines is not None:
             self.lines.write(result)  # before it counts: what cannot be written does not
         self.tally.add(result)
@@ -346,7 +346,7 @@ class _Run:
         from tactile_graph.exporter import write_block
 
         assert self.lines is not None  # people are shown one frame after the other
-        self.quantity = block.frames.images.quantity
+        self.quantities.add(block.frames.images.quantity)
         write_block(self.lines, block)
         self.tally.add_block(block)
 
@@ -438,7 +438,7 @@ class _Run:
         from tactile_graph.engine.tables.table import units_of
 
         table = self.form_of_table
-        return None if table is None else units_of(table, self.quantity)
+        return None if table is None else units_of(table, self.quantities)
 
     def _hints(self, drawn: bool) -> None:
         say = self.people
@@ -447,6 +447,11 @@ class _Run:
             names = ", ".join(c.key for c in hidden)
             say.print(f"not shown, for want of width: {names}; -o gives them", style="dim",
                       soft_wrap=True)  # fmt: skip
+        if self.form_of_table is not None and self.written:
+            from tactile_graph.engine.tables.table import without_one_unit
+
+            several = without_one_unit(self.form_of_table, self.quantities)
+            say.print(several, style="yellow", soft_wrap=True) if several else None
         written = self.output.name if self.written and self.output is not None else None
         for name in (written, self.plot if drawn else None):
             if name not in (None, "-"):

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import click
 
+from tactile_graph.errors import UsageError
+
 
 @click.command()
 @click.argument("results", nargs=-1, required=True, type=click.Path(path_type=Path))
@@ -26,6 +28,7 @@ def summary(results: tuple[Path, ...], as_json: bool) -> None:
     from tactile_graph.cli.summary.summary import Summary
     from tactile_graph.cli.terminal import console
 
+    _refuse_twice(results)
     found = Summary()
     for path in results:
         prefix = f"{path}: " if len(results) > 1 else ""
@@ -35,3 +38,13 @@ def summary(results: tuple[Path, ...], as_json: bool) -> None:
         hand_over(json.dumps(as_data(found), ensure_ascii=False) + "\n")
         return
     show(console(), ", ".join(map(str, results)), found)
+
+
+def _refuse_twice(results: tuple[Path, ...]) -> None:
+    """Refuse a file that is given twice: its frames would count double."""
+    given: dict[Path, Path] = {}
+    for path in results:
+        before = given.setdefault(path.resolve(), path)
+        if before is not path:
+            also = "" if str(before) == str(path) else f" (also as {before})"
+            raise UsageError(f"{path} is given twice{also}: its frames would count double")

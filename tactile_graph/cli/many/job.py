@@ -71,8 +71,8 @@ class Done(NamedTuple):
     part : bytes
         The file that they make alone.
     tally : Tally
-    quantity : str
-        Of the last frame.
+    quantities : frozenset of str
+        Of the frames.
     seconds : float
         How long it took.
     error : Exception or None
@@ -84,7 +84,7 @@ class Done(NamedTuple):
     n_frames: int = 0
     part: bytes = b""
     tally: Tally | None = None
-    quantity: str = ""
+    quantities: frozenset[str] = frozenset()
     seconds: float = 0.0
     error: Exception | None = None
     irregular: str = ""
@@ -121,7 +121,7 @@ class _Bench:
         start = portion.low - self.job.start
         tally = Tally(self.columns, n_looked=max(0, LOOKED_THROUGH - start))
         ended: list[Exception] = []
-        quantity = ""
+        quantities: set[str] = set()
         try:
             with self._written() as (writer, part):
                 try:
@@ -129,11 +129,11 @@ class _Bench:
                         if isinstance(came, Block):
                             tally.add_block(came)
                             write_block(writer, came)
-                            quantity = came.frames.images.quantity
+                            quantities.add(came.frames.images.quantity)
                         else:
                             tally.add(came)
                             writer.write(came)
-                            quantity = came.frame.image.quantity
+                            quantities.add(came.frame.image.quantity)
                 except Irregular:
                     raise
                 except Exception as error:  # what was done before is kept
@@ -141,7 +141,8 @@ class _Bench:
         except Irregular as why:
             return Done(irregular=str(why) or "frames that cannot be read on their own")
         tally.outputs = []  # columns hold functions, and who asked knows them
-        return Done(tally.n, part[0], tally, quantity, error=ended[0] if ended else None)
+        trouble = ended[0] if ended else None
+        return Done(tally.n, part[0], tally, frozenset(quantities), error=trouble)
 
     def _results(self, portion: Portion) -> Iterator[Result | Block[Result]]:
         if self.runner.stateful:

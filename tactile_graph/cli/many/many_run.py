@@ -21,7 +21,7 @@ from tactile_graph.cli.output.tally import Tally
 from tactile_graph.cli.terminal import console
 from tactile_graph.engine.blocks.gathering import is_long
 from tactile_graph.engine.tables.columns import columns_of
-from tactile_graph.engine.tables.table import make_table, units_of
+from tactile_graph.engine.tables.table import make_table, units_of, without_one_unit
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import uninterrupted, whole_file
 from tactile_graph.many.division import Division, division_of
@@ -79,7 +79,8 @@ class ManyRun:
     interrupted: KeyboardInterrupt | None = None
     error: Exception | None = None
     left_out: list[int] = field(default_factory=list)
-    quantity: str = "raw"
+    quantities: set[str] = field(default_factory=set)
+    without_unit: str = ""
 
     def go(self) -> int:
         """Run, say what came of it, and return the exit code.
@@ -172,7 +173,7 @@ class ManyRun:
     def _go_on(self, high: int, so_far: Mapping[str, Any]) -> None:
         self.low = high
         self.tally = Tally.of_kept(self.columns, so_far["tally"])
-        self.quantity = so_far["quantity"]
+        self.quantities = {*so_far["quantities"]}
         self.n_kept = self.tally.n
         for place in so_far["left_out"]:
             self._leave_out(place)
@@ -285,12 +286,13 @@ class ManyRun:
     def _take(self, portion: Portion, came: Done) -> None:
         assert came.tally is not None  # it is no irregular one
         self.tally.join(came.tally)
-        self.quantity = came.quantity or self.quantity
+        self.quantities |= came.quantities
         self.feed.size.took(came.n_frames, came.seconds)
         high = portion.high if came.error is None else portion.low + came.n_frames
         if self.unfinished is not None:
             so_far = {
-                "tally": self.tally.kept(), "quantity": self.quantity, "left_out": self.left_out,
+                "tally": self.tally.kept(), "quantities": sorted(self.quantities),
+                "left_out": self.left_out,
             }  # fmt: skip
             self.unfinished.add(high, came.part, so_far)
         self.low, self.n_kept = high, self.tally.n
@@ -337,6 +339,8 @@ class ManyRun:
             text = ""
         if text:
             self.people.print(text, style="dim", soft_wrap=True)
+        if self.without_unit:
+            self.people.print(self.without_unit, style="yellow", soft_wrap=True)
 
     def _provenance(self) -> None:
         asked = self.asked
@@ -344,7 +348,8 @@ class ManyRun:
         units = None
         if asked.output.exporter.holds == "numbers":
             table = make_table(asked.pipeline, asked.outputs, asked.output.long)
-            units = units_of(table, self.quantity)
+            units = units_of(table, self.quantities)
+            self.without_unit = without_one_unit(table, self.quantities)
         data = provenance(
             asked.pipeline, asked.seed, self.report,
             command=["tactile-graph", *sys.argv[1:]], complete=True,

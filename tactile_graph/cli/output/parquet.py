@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import os
+import shutil
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -21,6 +23,8 @@ from tactile_graph.files import left_of, said, uninterrupted
 from tactile_graph.part_files import part_of
 
 ROWS_A_GROUP = 10_000
+LARGEST = 2**63
+"""Whole numbers in Parquet are below this, and not below its negative."""
 FRAME = "frame"
 """The column of numbers that frames are counted by."""
 MISSING = "Parquet files need pyarrow: pip install 'tactile-graph[parquet]'"
@@ -68,7 +72,8 @@ class ParquetFile:
         self._cells: dict[str, list[Any]] = {column.key: [] for column in table.columns}
         self._n_rows = 0
         self._writer: Any = None
-        self._quantity = "raw"
+        self._quantities: set[str] = set()
+        self._units: dict[str, str] = {}
 
     def write(self, result: Result) -> None:
         """Take in a frame's rows."""
@@ -83,8 +88,7 @@ class ParquetFile:
         self._add(cells, n, block.frames.images.quantity)
 
     def _add(self, cells: dict[str, list[Any]], n: int, quantity: str) -> None:
-        if self._writer is None and not self._n_rows:
-            self._quantity = quantity
+        self._quantities.add(quantity)
         for key, column in self._cells.items():
             column += cells[key]
         self._n_rows += n
@@ -98,7 +102,23 @@ class ParquetFile:
         self._flush()
         with self._whole():
             self._writer.close()
+            self._correct_units()
             os.replace(self._part, self._target)
+
+    def _correct_units(self) -> None:
+        """Write the file anew where later frames were in other units than the first."""
+        units = units_of(self._table, self._quantities)
+        if units == self._units:
+            return
+        with tempfile.TemporaryFile() as copy:
+            _told_anew(self._pyarrow, str(self._part), copy, self._schema_of(units))
+            copy.seek(0)
+            with self._part.open("wb") as file:
+                shutil.copyfileobj(copy, file)
+
+    def _schema_of(self, units: dict[str, str]) -> Any:
+        arrow = self._pyarrow
+        return arrow.schema([_field(arrow, c, units.get(c.key, "")) for c in self._table.columns])
 
     @contextmanager
     def _whole(self) -> Iterator[None]:
@@ -115,14 +135,48 @@ class ParquetFile:
         arrow = self._pyarrow
         with self._whole():
             if self._writer is None:
-                units = units_of(self._table, self._quantity)
-                fields = [_field(arrow, c, units.get(c.key, "")) for c in self._table.columns]
-                self._schema = arrow.schema(fields)
+                self._units = units_of(self._table, self._quantities)
+                self._schema = self._schema_of(self._units)
                 self._writer = _writer(arrow, str(self._part), self._schema)
-            cells = {c.key: _plain(self._cells[c.key], c.kind) for c in self._table.columns}
+            cells = [self._array(c) for c in self._table.columns]
             self._writer.write_table(arrow.table(cells, schema=self._schema))
         self._cells = {key: [] for key in self._cells}
         self._n_rows = 0
+
+    def _array(self, column: Column) -> Any:
+        """Return a column's cells.
+
+        Raises
+        ------
+        UsageError
+            If a whole number is larger than Parquet holds.
+        """
+        arrow, cells = self._pyarrow, _plain(self._cells[column.key], column.kind)
+        try:
+            return arrow.array(cells, self._schema.field(column.key).type)
+        except (OverflowError, arrow.ArrowInvalid):
+            large = [c for c in cells if isinstance(c, int) and not -LARGEST <= c < LARGEST]
+            if not large:
+                raise
+            raise UsageError(
+                f"-o {self.output}: column {column.key!r} holds {_short(large[0])}, and whole "
+                "numbers in Parquet have 64 bits; .csv and .jsonl take it"
+            ) from None
+
+
+def _short(number: int) -> str:
+    return str(number) if abs(number) < 10**40 else f"a number of {number.bit_length()} bits"
+
+
+def _told_anew(arrow: Any, source: str, target: BinaryIO, schema: Any) -> None:
+    """Write a file's groups again, with other units in their fields."""
+    with (
+        arrow.parquet.ParquetFile(source) as file,
+        _writer(arrow, target, schema) as writer,
+    ):
+        for i in range(file.num_row_groups):
+            group = file.read_row_group(i)
+            writer.write_table(group.cast(schema), row_group_size=max(group.num_rows, 1))
 
 
 def _writer(arrow: Any, where: str | BinaryIO, schema: Any) -> Any:
@@ -164,11 +218,15 @@ def _joined(parts: Iterator[bytes], file: BinaryIO) -> None:
     """Write the rows of several files as one, in groups as large as one process makes them."""
     arrow = pyarrow()
     first = arrow.parquet.read_table(io.BytesIO(next(parts)))
+    units = units_in(first.schema)
+    agreed = dict(units)
     with _writer(arrow, file, first.schema) as writer:
         held, n_held = [first], first.num_rows
         for part in parts:
-            table = arrow.parquet.read_table(io.BytesIO(part), schema=first.schema)
-            held.append(table)
+            table = arrow.parquet.read_table(io.BytesIO(part))
+            its = units_in(table.schema)
+            agreed = {name: unit for name, unit in agreed.items() if its.get(name) == unit}
+            held.append(table.cast(first.schema))
             n_held += table.num_rows
             if n_held >= ROWS_A_GROUP:
                 whole = arrow.concat_tables(held)
@@ -177,6 +235,34 @@ def _joined(parts: Iterator[bytes], file: BinaryIO) -> None:
                 held, n_held = [whole.slice(n)], n_held - n
         if n_held or first.num_rows == 0:
             writer.write_table(arrow.concat_tables(held))
+    if agreed != units:
+        _correct_joined(arrow, file, _with_units(arrow, first.schema, agreed))
+
+
+def units_in(schema: Any) -> dict[str, str]:
+    """Return the units that the fields of a Parquet file tell, by column."""
+    return {
+        field.name: field.metadata[b"unit"].decode()
+        for field in schema
+        if field.metadata and b"unit" in field.metadata
+    }
+
+
+def _with_units(arrow: Any, schema: Any, units: dict[str, str]) -> Any:
+    told = [f.with_metadata({"unit": units[f.name]}) if f.name in units else f.remove_metadata()
+            for f in schema]  # fmt: skip
+    return arrow.schema(told)
+
+
+def _correct_joined(arrow: Any, file: BinaryIO, schema: Any) -> None:
+    """Write a file anew in place, with the units on which its parts agree."""
+    file.flush()
+    with tempfile.TemporaryFile() as copy:
+        _told_anew(arrow, file.name, copy, schema)
+        copy.seek(0)
+        file.seek(0)
+        file.truncate()
+        shutil.copyfileobj(copy, file)
 
 
 PARQUET = Exporter("Parquet", "numbers", _opened, _check, _joined)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import Any
 
 from tactile_graph.cli.summary.quantiles import Numbers
-from tactile_graph.cli.summary.summary import SHARES, Group, Summary
+from tactile_graph.cli.summary.summary import SHARES, Group, Quantity, Summary
 
 TURNS = ("°", "rad")
 """Units of angles, whose mean is none where they wrap."""
@@ -17,39 +18,47 @@ def as_data(summary: Summary) -> dict[str, Any]:
     return {
         "frames": summary.frames,
         "lasts_s": summary.lasts_s,
-        **_group(summary, summary.all),
+        **_group(summary.all),
         "recordings": [
             {
                 "recording": name,
                 "frames": g.frames,
                 "lasts_s": g.times.lasts_s,
-                **_group(summary, g),
+                **_group(g),
             }
             for name, g in summary.recordings.items()
         ],
     }
 
 
-def _group(summary: Summary, group: Group) -> dict[str, Any]:
+def _group(group: Group) -> dict[str, Any]:
+    n_units = Counter(quantity.key for quantity in group.numbers)
     return {
         "outcomes": {output: dict(words) for output, words in group.outcomes.items()},
-        "quantities": {key: _numbers(summary, group, key) for key in group.numbers},
+        "quantities": {
+            _name(q) if n_units[q.key] > 1 else q.key: _numbers(group, q) for q in group.numbers
+        },
         "texts": {key: dict(words) for key, words in group.texts.items()},
     }
 
 
-def _numbers(summary: Summary, group: Group, key: str) -> dict[str, Any]:
-    numbers, unit = group.numbers[key], summary.unit(key)
+def _name(quantity: Quantity) -> str:
+    """Return the name of a column that is there in several units."""
+    return f"{quantity.key} [{quantity.unit or '?'}]"
+
+
+def _numbers(group: Group, quantity: Quantity) -> dict[str, Any]:
+    numbers = group.numbers[quantity]
     told = {
-        "unit": unit,
+        "unit": quantity.unit,
         "n": numbers.n,
         "not_finite": numbers.n_not_finite,
-        "mean": mean_of(numbers, unit),
+        "mean": mean_of(numbers, quantity.unit),
         "least": numbers.least,
         "most": numbers.most,
     }
-    if key in group.signed:
-        told["bias"] = group.signed[key].mean
+    if quantity in group.signed:
+        told["bias"] = group.signed[quantity].mean
     for share, value in zip(SHARES, numbers.quantiles(SHARES), strict=True):
         told["median" if share == 0.5 else f"p{100 * share:g}"] = float(value)
     return {k: _known(v) for k, v in told.items()}

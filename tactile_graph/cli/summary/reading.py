@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.cli.output.data_set import KEY, MANIFEST, manifest_of
-from tactile_graph.cli.output.parquet import pyarrow
+from tactile_graph.cli.output.parquet import pyarrow, units_in
 from tactile_graph.errors import DataError
 from tactile_graph.provenance import sidecar
 
@@ -98,14 +98,12 @@ def _parquet(path: Path, recording: str) -> Iterator[Chunk]:
     try:
         with arrow.parquet.ParquetFile(path) as file:
             _check_names(path, file.schema_arrow.names)
-            units = {
-                f.name: f.metadata[b"unit"].decode()
-                for f in file.schema_arrow
-                if f.metadata and b"unit" in f.metadata
-            }
+            units = units_in(file.schema_arrow)
             for batch in file.iter_batches(ROWS_A_CHUNK):
                 found = zip(batch.schema.names, batch.columns, strict=True)
-                yield Chunk(recording, {n: _of_arrow(arrow, c) for n, c in found}, units)
+                columns = {n: _of_arrow(arrow, c) for n, c in found}
+                _check_frames(str(path), columns)
+                yield Chunk(recording, columns, units)
     except arrow.ArrowException as error:
         raise DataError(str(path), f"is no whole Parquet file: {error}") from error
 
@@ -131,6 +129,7 @@ def _csv(path: Path) -> Iterator[Chunk]:
         try:
             names = next(reader, [])
             _check_names(path, names)
+            texts = {"label", *(("output", "type") if is_long(names) else ())}
             while rows := list(islice(reader, ROWS_A_CHUNK)):
                 if any(len(row) != len(names) for row in rows):
                     end = reader.line_num
@@ -140,13 +139,24 @@ def _csv(path: Path) -> Iterator[Chunk]:
                         f"{path}:{line}", f"has {len(rows[first])} cells, the header {len(names)}"
                     )
                 found = zip(names, zip(*rows, strict=True), strict=True)
-                yield Chunk("", {n: _of_texts(n, cells) for n, cells in found}, units)
+                columns = {n: _of_texts(cells, _is_outcome(n) or n in texts) for n, cells in found}
+                _check_frames(str(path), columns)
+                yield Chunk("", columns, units)
         except csv.Error as error:
             raise DataError(f"{path}:{reader.line_num}", f"is no CSV: {error}") from error
 
 
-def _of_texts(name: str, cells: tuple[str, ...]) -> Column:
-    if name not in ("label", "output", "type") and not name.endswith("outcome"):
+def _is_outcome(name: str) -> bool:
+    return name.rpartition(".")[2] == "outcome"
+
+
+def is_long(names: Collection[str]) -> bool:
+    """Return whether a table of these columns has a row a frame and object."""
+    return {"output", "item", "outcome"} <= {*names}
+
+
+def _of_texts(cells: tuple[str, ...], is_text: bool) -> Column:
+    if not is_text:
         try:
             values = np.array([cell or "nan" for cell in cells], dtype=np.float64)
         except ValueError:
@@ -179,14 +189,35 @@ def _json_lines(path: Path) -> Iterator[Lines]:
                     raise DataError(f"{path}:{number}", f"is no JSON: {error}") from error
                 if not isinstance(row, dict) or not isinstance(row.get("outputs"), dict):
                     raise DataError(f"{path}:{number}", "is no line of a run: has no 'outputs'")
+                for name in ("frame", "time_s"):
+                    if not isinstance(row.get(name), int | float | None):
+                        what = f"{name!r} must be a number, got {row[name]!r}"
+                        raise DataError(f"{path}:{number}", f"is no line of a run: {what}")
                 rows.append(row)
             yield Lines("", rows)
 
 
 def _check_names(path: Path, names: list[str]) -> None:
-    if "frame" not in names or not any(n.endswith("outcome") for n in names):
+    if "frame" not in names or not any(map(_is_outcome, names)):
         raise DataError(
             str(path),
             "is no result of a run: has no columns 'frame' and '….outcome' "
             "(results are written by 'tactile-graph run … -o FILE')",
         )
+
+
+def _check_frames(path: str, columns: Mapping[str, Column]) -> None:
+    """Refuse a table that does not number its frames."""
+    if columns["frame"].dtype == object:
+        got = next((v for v in columns["frame"] if v is not None), None)
+        raise DataError(
+            path, f"is no result of a run: column 'frame' must hold numbers, got {got!r}"
+        )
+
+
+def as_float(number: float | None) -> float:
+    """Return a number of JSON; NaN for none, infinity for a whole one that is too large."""
+    try:
+        return np.nan if number is None else float(number)
+    except OverflowError:
+        return np.inf

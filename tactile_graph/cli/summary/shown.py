@@ -14,7 +14,8 @@ from rich.text import Text
 
 from tactile_graph.cli.output.live_table import shown
 from tactile_graph.cli.summary.as_data import mean_of
-from tactile_graph.cli.summary.summary import Group, Summary, kind
+from tactile_graph.cli.summary.quantiles import Numbers
+from tactile_graph.cli.summary.summary import Group, Quantity, Summary, kind
 from tactile_graph.vocabulary import words_and_unit
 
 MOST_REASONS = 5
@@ -84,24 +85,24 @@ def _outcomes(group: Group) -> Iterator[Text]:
 
 def _quantities(console: Console, summary: Summary) -> None:
     """Print a row for each quantity, errors last; columns that have no place are left out."""
-    keys = sorted(summary.all.numbers, key=_is_error)
-    keys = [
-        key for key in keys if summary.all.numbers[key].n + summary.all.numbers[key].n_not_finite
-    ]
-    if not keys:
+    told = summary.all.numbers
+    quantities = sorted(told, key=lambda q: (_is_error(q), _first_place(told, q)))
+    quantities = [q for q in quantities if told[q].n + told[q].n_not_finite]
+    if not quantities:
         return
     table = _table("", "unit", *STATISTICS)
-    for key in keys:
-        numbers, unit = summary.all.numbers[key], summary.unit(key)
+    for quantity in quantities:
+        numbers, unit = told[quantity], quantity.unit
         p5, median, p95 = numbers.quantiles((0.05, 0.5, 0.95))
-        cells = (mean_of(numbers, unit), p5, median, p95, numbers.least, numbers.most)
+        ends = (numbers.least, numbers.most) if numbers.n else (math.nan, math.nan)
+        cells = (mean_of(numbers, unit), p5, median, p95, *ends)
         n = str(numbers.n) + (
             f" (+{numbers.n_not_finite} no number)" if numbers.n_not_finite else ""
         )
-        style = "magenta" if _is_error(key) else ""
-        table.add_row(_called(key), unit, n, *(_cell(c, unit) for c in cells), style=style)
+        style = "magenta" if _is_error(quantity) else ""
+        table.add_row(_called(quantity.key), unit, n, *(_cell(c, unit) for c in cells), style=style)
     console.print(table)
-    if any(map(_is_error, keys)):
+    if any(map(_is_error, quantities)):
         console.print("errors against the truth are without their sign", style="dim")
 
 
@@ -116,7 +117,8 @@ def _texts(group: Group) -> Iterator[Text]:
 
 def _recordings(console: Console, summary: Summary) -> None:
     """Print a row a recording: the medians of as many quantities as there is room for."""
-    keys = sorted(summary.all.numbers, key=lambda k: not _is_error(k))
+    told = summary.all.numbers
+    quantities = sorted(told, key=lambda q: (not _is_error(q), _first_place(told, q)))
     names = list(summary.recordings)
     chosen = names[:MOST_RECORDINGS]
     head = ["recording", "frames", "lasts", *LACKING]
@@ -124,25 +126,25 @@ def _recordings(console: Console, summary: Summary) -> None:
     rows = [_row(_cut(name, longest), summary.recordings[name]) for name in chosen]
     width = sum(max(cell_len(c) for c in column) + 2 for column in zip(head, *rows, strict=True))
     room, kept = console.width - width, []
-    for key in keys:
-        cells = [_median(summary, summary.recordings[name], key) for name in chosen]
-        wide = max(cell_len(c) for c in (*cells, *_stacked(summary, key).split("\n"))) + 2
+    for quantity in quantities:
+        cells = [_median(summary.recordings[name], quantity) for name in chosen]
+        wide = max(cell_len(c) for c in (*cells, *_stacked(quantity).split("\n"))) + 2
         if wide > room:
             break
         room -= wide
-        kept.append((_stacked(summary, key), cells))
+        kept.append((_stacked(quantity), cells))
     table = _table(*head, *(name for name, _ in kept))
     for i, row in enumerate(rows):
         table.add_row(*row, *(cells[i] for _, cells in kept))
     console.print(table)
-    told = ["medians"] if kept else []
-    if len(kept) < len(keys):
-        n = len(keys) - len(kept)
+    said = ["medians"] if kept else []
+    if len(kept) < len(quantities):
+        n = len(quantities) - len(kept)
         hidden = "1 quantity is" if n == 1 else f"{n} quantities are"
-        told.append(f"{hidden} not shown for want of width")
+        said.append(f"{hidden} not shown for want of width")
     if len(names) > len(chosen):
-        told.append(f"{len(names) - len(chosen)} recordings more")
-    console.print("; ".join(told) + " (--json gives all)\n", style="dim", soft_wrap=True)
+        said.append(f"{len(names) - len(chosen)} recordings more")
+    console.print("; ".join(said) + " (--json gives all)\n", style="dim", soft_wrap=True)
 
 
 def _row(name: str, group: Group) -> list[str]:
@@ -161,16 +163,21 @@ def _cut(name: str, longest: int) -> str:
     return f"…{line}"
 
 
-def _median(summary: Summary, group: Group, key: str) -> str:
-    numbers = group.numbers.get(key)
+def _first_place(told: dict[Quantity, Numbers], quantity: Quantity) -> int:
+    """Return the place of a column among all: those of another unit stand beside it."""
+    return next(i for i, other in enumerate(told) if other.key == quantity.key)
+
+
+def _median(group: Group, quantity: Quantity) -> str:
+    numbers = group.numbers.get(quantity)
     value = np.nan if numbers is None else float(numbers.quantiles(0.5))
-    return _cell(value, summary.unit(key))
+    return _cell(value, quantity.unit)
 
 
-def _stacked(summary: Summary, key: str) -> str:
+def _stacked(quantity: Quantity) -> str:
     """Return a column's head: its output over the quantity over its unit."""
-    output, _, field = key.rpartition(".")
-    return "\n".join((output, words_and_unit(field)[0], summary.unit(key)))
+    output, _, field = quantity.key.rpartition(".")
+    return "\n".join((output, words_and_unit(field)[0], quantity.unit))
 
 
 def _called(key: str) -> str:
@@ -178,8 +185,8 @@ def _called(key: str) -> str:
     return f"{output} {words_and_unit(field)[0]}".strip()
 
 
-def _is_error(key: str) -> bool:
-    return "_error_" in key
+def _is_error(quantity: Quantity) -> bool:
+    return "_error_" in quantity.key
 
 
 def _cell(value: float, unit: str) -> str:

@@ -7,13 +7,13 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.cli.summary.quantiles import Numbers
-from tactile_graph.cli.summary.reading import LEAD, Chunk, Column, Lines
+from tactile_graph.cli.summary.reading import LEAD, Chunk, Column, Lines, as_float, is_long
 from tactile_graph.vocabulary import words_and_unit
 
 LONG = ("output", "item", "outcome", "type")
@@ -23,6 +23,14 @@ MOST_WORDS = 1000
 OTHERS = "(others)"
 WHOLE_RECORDINGS = 64
 """Of so many recordings, the latest, all is kept that makes their quantiles exact."""
+
+
+class Quantity(NamedTuple):
+    """A column whose numbers are in one unit: those of another are another quantity."""
+
+    key: str
+    unit: str
+    """"" where the numbers are bare, or nobody told it."""
 
 
 @dataclass
@@ -53,9 +61,9 @@ class Group:
     times: Times = field(default_factory=Times)
     outcomes: dict[str, Counter[str]] = field(default_factory=dict)
     """By output, how often each outcome: ``ok``, ``skipped: why``, ``failed: why``."""
-    numbers: dict[str, Numbers] = field(default_factory=dict)
-    """By column; errors by their size."""
-    signed: dict[str, Numbers] = field(default_factory=dict)
+    numbers: dict[Quantity, Numbers] = field(default_factory=dict)
+    """Errors by their size."""
+    signed: dict[Quantity, Numbers] = field(default_factory=dict)
     """Errors with their sign, where they have one."""
     texts: dict[str, Counter[str]] = field(default_factory=dict)
     _last_frame: float = math.nan
@@ -71,7 +79,7 @@ class Group:
         """Count outcomes of an output."""
         _count(self.outcomes.setdefault(output, Counter()), words)
 
-    def add_values(self, key: str, values: Column) -> None:
+    def add_values(self, key: str, values: Column, unit: str) -> None:
         """Take in the values of a column."""
         if values.dtype == object:
             _count(
@@ -79,10 +87,11 @@ class Group:
             )
             return
         told = values[~np.isnan(values)]
+        quantity = Quantity(key, unit)
         if "_error_" in key:
-            self.signed.setdefault(key, Numbers()).add(told)
+            self.signed.setdefault(quantity, Numbers()).add(told)
             told = np.abs(told)
-        self.numbers.setdefault(key, Numbers()).add(told)
+        self.numbers.setdefault(quantity, Numbers()).add(told)
 
     def compress(self) -> None:
         """Take little memory from now on."""
@@ -102,7 +111,6 @@ class Summary:
 
     recordings: dict[str, Group] = field(default_factory=dict)
     all: Group = field(default_factory=Group)
-    units: dict[str, str] = field(default_factory=dict)
 
     @property
     def frames(self) -> int:
@@ -131,15 +139,8 @@ class Summary:
             for name, rows in _by_label(chunk, otherwise):
                 self._lines(self._groups(prefix + name), rows)
             return
-        self.units.update(chunk.units)
         for name, columns in _split(chunk, otherwise):
-            self._rows(self._groups(prefix + name), columns)
-
-    def unit(self, key: str) -> str:
-        """Return the unit of a column: as its file tells, otherwise by its name."""
-        column = key if key in self.units else key.rpartition(".")[2]
-        told = self.units.get(column) or words_and_unit(key.rpartition(".")[2])[1]
-        return "" if told == "1" else told
+            self._rows(self._groups(prefix + name), columns, chunk.units)
 
     def _groups(self, name: str) -> tuple[Group, Group]:
         found = self.recordings.get(name)
@@ -149,7 +150,9 @@ class Summary:
                 next(islice(reversed(self.recordings.values()), WHOLE_RECORDINGS, None)).compress()
         return found, self.all
 
-    def _rows(self, groups: tuple[Group, Group], columns: dict[str, Column]) -> None:
+    def _rows(
+        self, groups: tuple[Group, Group], columns: dict[str, Column], units: Mapping[str, str]
+    ) -> None:
         frames, times = columns["frame"], columns.get("time_s")
         for group in groups:
             group.count_frames(frames)
@@ -160,7 +163,7 @@ class Summary:
                 if output:
                     group.add_outcomes(output, Counter(v for v in values if v is not None))
                 else:
-                    group.add_values(key, values)
+                    group.add_values(key, values, _unit(key, units))
 
     def _lines(self, groups: tuple[Group, Group], rows: list[dict[str, Any]]) -> None:
         numbers: dict[str, list[float]] = {}
@@ -175,17 +178,24 @@ class Summary:
                 for error, value in errors.items():
                     head, _, unit = error.rpartition("_")
                     _gather(f"{output}.{head}_error_{unit}", value, numbers, texts)
-        frames = np.array([row.get("frame", np.nan) for row in rows], dtype=np.float64)
-        times = np.array([row.get("time_s", np.nan) for row in rows], dtype=np.float64)
+        frames = np.array([as_float(row.get("frame", np.nan)) for row in rows])
+        times = np.array([as_float(row.get("time_s", np.nan)) for row in rows])
         for group in groups:
             group.count_frames(frames)
             group.times.add(times)
             for output, counted in words.items():
                 group.add_outcomes(output, counted)
             for key, found in numbers.items():
-                group.add_values(key, np.array(found, dtype=np.float64))
+                group.add_values(key, np.array(found, dtype=np.float64), _unit(key, {}))
             for key, told in texts.items():
-                group.add_values(key, np.array(told, dtype=object))
+                group.add_values(key, np.array(told, dtype=object), "")
+
+
+def _unit(key: str, units: Mapping[str, str]) -> str:
+    """Return the unit of a column: as its file tells, otherwise by its name."""
+    field = key.rpartition(".")[2]
+    told = units.get(key if key in units else field) or words_and_unit(field)[1]
+    return "" if told == "1" else told
 
 
 def kind(word: str) -> str:
@@ -221,7 +231,7 @@ def _by_label(lines: Lines, otherwise: str) -> Iterable[tuple[str, list[dict[str
 
 def _cells(columns: dict[str, Column]) -> Iterator[tuple[str, str, Column]]:
     """Yield outputs' outcomes, and the values of columns, named by their output in long tables."""
-    if not {*LONG[:3]} <= {*columns}:
+    if not is_long(columns):
         for key, values in columns.items():
             output = key.removesuffix(".outcome") if key.endswith(".outcome") else ""
             if key not in LEAD:
@@ -256,7 +266,7 @@ def _gather(
     if isinstance(value, bool):
         texts.setdefault(key, []).append("yes" if value else "no")
     elif isinstance(value, int | float):
-        numbers.setdefault(key, []).append(value)
+        numbers.setdefault(key, []).append(as_float(value))
     elif isinstance(value, str):
         texts.setdefault(key, []).append(value)
     elif isinstance(value, dict) and _ended(value) == "ok":

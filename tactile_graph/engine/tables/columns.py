@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Literal, get_origin
@@ -10,6 +11,7 @@ import numpy as np
 
 from tactile_graph.engine.outcomes.outcome import NO_VALUE
 from tactile_graph.engine.outcomes.outcomes import Outcomes
+from tactile_graph.engine.tables.image_quantities import UNKNOWN, ByFrame, Told, told_of
 from tactile_graph.engine.tables.rows import scalars
 from tactile_graph.engine.tables.truth import error_names, errors_against, nearest
 from tactile_graph.pipeline.graph import Graph
@@ -23,8 +25,8 @@ class Column:
     """One scalar of an output.
 
     ``key`` is its name in files, ``field`` what it is called within the output, without the unit;
-    ``error`` is which error it holds, if it holds one. ``of_image`` says that its unit is that of
-    the frame's readings.
+    ``error`` is which error it holds, if it holds one. ``quantities`` holds, where its unit is that
+    of an image, the image's quantity by that of the frame: "" where nobody knows it.
     """
 
     key: str
@@ -33,7 +35,7 @@ class Column:
     unit: str
     kind: type
     error: str = ""
-    of_image: bool = False
+    quantities: ByFrame | None = dataclasses.field(default=None, compare=False)
 
 
 @dataclass(frozen=True)
@@ -49,19 +51,20 @@ def columns_of(pipeline: Graph, asked: tuple[str, ...]) -> list[OutputColumns]:
     """Return the columns of each output or node asked for; the same for every frame."""
     found = []
     for name in asked:
-        kind = pipeline.type_of(pipeline.outputs.get(name) or pipeline.ref(name))
-        values = {c.key: c for arm in arms(kind) for c in _columns(name, name, arm)}
+        ref = pipeline.outputs.get(name) or pipeline.ref(name)
+        kind, told = pipeline.type_of(ref), told_of(pipeline, ref)
+        values = {c.key: c for arm in arms(kind) for c in _columns(name, name, arm, told)}
         errors = tuple(_error_column(name, e) for e in error_names(kind))
         found.append(OutputColumns(name, tuple(values.values()), errors))
     return found
 
 
-def columns_of_type(output: str, kind: Any) -> list[Column]:
-    """Return the columns of an output's values of one type."""
-    return list(_columns(output, output, kind))
+def columns_of_type(output: str, kind: Any, told: Told = UNKNOWN) -> list[Column]:
+    """Return the columns of an output's values of one type, whose images are in ``told``."""
+    return list(_columns(output, output, kind, told))
 
 
-def _columns(output: str, key: str, kind: Any) -> Iterator[Column]:
+def _columns(output: str, key: str, kind: Any, told: Told = UNKNOWN) -> Iterator[Column]:
     """Yield the columns `scalars` fills for a value of one type."""
     if get_origin(kind) is Literal:
         kind = str
@@ -72,24 +75,29 @@ def _columns(output: str, key: str, kind: Any) -> Iterator[Column]:
         yield _column(output, key, kind)
     elif shown := getattr(kind, "columns_shown", ()):
         for name in shown:
-            of_image = name in getattr(kind, "image_unit", ())
-            yield _column(output, f"{key}.{name}", _scalar(field_type(kind, name)), of_image)
+            column = _column(output, f"{key}.{name}", _scalar(field_type(kind, name)))
+            yield _in_images_unit(column, kind, name, told)
     elif hasattr(kind, "_fields"):
-        yield from _field_columns(output, key, kind)
+        yield from _field_columns(output, key, kind, told)
     elif list_item(kind) is not None or isinstance(public_fields(kind).get("count"), type):
         yield _column(output, f"{key}.count", int)
 
 
-def _field_columns(output: str, key: str, kind: Any) -> Iterator[Column]:
-    types = public_fields(kind)
+def _in_images_unit(column: Column, kind: Any, name: str, told: Told) -> Column:
+    measured = name in getattr(kind, "image_unit", ())
+    return replace(column, quantities=told.of(kind)) if measured else column
+
+
+def _field_columns(output: str, key: str, kind: Any, told: Told) -> Iterator[Column]:
+    types, views = public_fields(kind), getattr(kind, "provides", {}).values()
     for name in kind._fields:
         for arm in arms(types.get(name, Any)):
             if list_item(arm) is not None and "count" in kind._fields:
                 continue  # the record counts its list itself
             if arm is not type(None):
-                of_image = name in getattr(kind, "image_unit", ())
-                found = _columns(output, f"{key}.{name}", arm)
-                yield from (replace(c, of_image=True) for c in found) if of_image else found
+                inner = told if name in views else Told({}, told.measured)
+                for column in _columns(output, f"{key}.{name}", arm, inner):
+                    yield _in_images_unit(column, kind, name, told)
 
 
 def _scalar(kind: Any) -> type:
@@ -98,9 +106,9 @@ def _scalar(kind: Any) -> type:
     return scalar[0] if scalar else float
 
 
-def _column(output: str, key: str, kind: type, of_image: bool = False) -> Column:
+def _column(output: str, key: str, kind: type) -> Column:
     name = key.removeprefix(output).lstrip(".")
-    return Column(key, output, *words_and_unit(name), kind, of_image=of_image)
+    return Column(key, output, *words_and_unit(name), kind)
 
 
 def _error_column(output: str, error: str) -> Column:

@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,8 @@ from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.engine.tables.truth import shape_kind
 from tactile_graph.errors import PluginError
 
+OF_FRAMES = ("frame", "time_s", "label")
+"""The columns that say which frame a row is of."""
 MOST_NUMBERS = 32
 """How many numbers an array or a list may have to be written where only a summary is."""
 
@@ -39,12 +42,19 @@ def result_row(result: Outcomes) -> dict[str, Any]:
     for name in result.plan.asked:
         outcome = result.outcome(name)
         if outcome.__class__ in NO_VALUE:
-            row[name] = outcome_word(outcome)
+            row[free_key(name)] = outcome_word(outcome)
             continue
-        row.update(scalars(name, outcome))
+        row.update({free_key(key): value for key, value in scalars(name, outcome).items()})
         if gaps(outcome):
-            row[name] = outcome_word(outcome)
+            row[free_key(name)] = outcome_word(outcome)
     return row
+
+
+@cache
+def free_key(key: str) -> str:
+    """Return the name of an output's column beside those that every table has."""
+    taken = key in OF_FRAMES or key.rpartition(".")[2] == "outcome"
+    return f"{key}.value" if taken else key
 
 
 def scalars(name: str, value: Any) -> dict[str, Any]:

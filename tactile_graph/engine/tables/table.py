@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -25,12 +25,14 @@ from tactile_graph.engine.tables.columns import (
     columns_of_type,
     values_of,
 )
-from tactile_graph.engine.tables.rows import scalars
+from tactile_graph.engine.tables.image_quantities import ByFrame, Told, told_of
+from tactile_graph.engine.tables.rows import free_key, scalars
 from tactile_graph.engine.tables.truth import error_names, errors_against, nearest, shape_kind
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.wiring import arms, public_fields
 from tactile_graph.quantities import unit_of
 from tactile_graph.steps.signature import list_item
+from tactile_graph.vocabulary import words_and_unit
 from tactile_graph.wires.stacks import Stack
 
 Row = dict[str, Any]
@@ -55,20 +57,33 @@ class Table(Protocol):
         """Return the rows of several frames by columns, None in empty cells."""
 
 
-def units_of(table: Table, quantity: str) -> dict[str, str]:
-    """Return the unit of each column of numbers, ``1`` for bare ones.
+def units_of(table: Table, quantities: Collection[str]) -> dict[str, str]:
+    """Return the unit of each column of numbers: ``1`` for bare ones, "" where there is no one.
 
     Parameters
     ----------
     table : Table
-    quantity : str
+    quantities : collection of str
         Of the frames: some columns hold sums of readings.
     """
-    return {c.key: _unit(c, quantity) for c in table.columns if _is_number(c.kind)}
+    found = {c.key: _units(c, quantities) for c in table.columns if _is_number(c.kind)}
+    return {key: units[0] if len(units) == 1 else "" for key, units in found.items()}
 
 
-def _unit(column: Column, quantity: str) -> str:
-    return unit_of(quantity) if column.of_image else column.unit or "1"
+def without_one_unit(table: Table, quantities: Collection[str]) -> str:
+    """Return what to say of columns in which frames of several quantities differ; "" of none."""
+    names = [c.key for c in table.columns if len(_units(c, quantities)) > 1]
+    frames = " and ".join(sorted(quantities))
+    have = "has" if len(names) == 1 else "have"
+    return f"frames are in {frames}: {', '.join(names)} {have} no one unit" if names else ""
+
+
+def _units(column: Column, quantities: Collection[str]) -> list[str]:
+    by_frame = column.quantities
+    if by_frame is None:
+        return [column.unit or "1"]
+    found = {by_frame[q] for q in quantities if q in by_frame}
+    return sorted(unit_of(quantity) if quantity else "" for quantity in found)
 
 
 def _is_number(kind: type) -> bool:
@@ -83,6 +98,9 @@ def _lead(result: Outcomes) -> Row:
 class FrameTable:
     """A row a frame; of lists only how many items they have.
 
+    What an output holds under a name that the table itself has (``time_s``, ``….outcome``) is
+    named ``….value``.
+
     Parameters
     ----------
     outputs : sequence of OutputColumns
@@ -93,7 +111,8 @@ class FrameTable:
         columns = [*LEAD]
         for output in outputs:
             columns.append(Column(f"{output.output}.outcome", output.output, "outcome", "", str))
-            columns += [*output.values, *output.errors]
+            columns += [replace(c, key=free_key(c.key)) for c in output.values]
+            columns += output.errors
         self.columns = tuple(columns)
 
     def rows(self, result: Outcomes) -> Iterator[Row]:
@@ -101,7 +120,8 @@ class FrameTable:
         row = _lead(result)
         for output in self._outputs:
             row[f"{output.output}.outcome"] = outcome_word(result.outcome(output.output))
-            row.update(values_of(result, output))
+            values = values_of(result, output)
+            row.update({free_key(key): value for key, value in values.items()})
         yield row
 
     def of_block(self, block: Block[Any]) -> dict[str, list[Any]]:
@@ -124,7 +144,7 @@ class FrameTable:
                 shown = fields_shown(outcomes, name)
                 if shown is None:
                     return False
-                found |= shown
+                found |= {free_key(key): column for key, column in shown.items()}
                 found[f"{name}.outcome"] = ["ok"] * len(part.rows)
             else:
                 words = {o: outcome_word(o) for o in set(outcomes)}
@@ -167,13 +187,15 @@ class ObjectTable:
         self._parts: dict[str, list[_Part]] = {}
         found: dict[str, Column] = {}
         for name in asked:
-            kind = pipeline.type_of(pipeline.outputs.get(name) or pipeline.ref(name))
+            ref = pipeline.outputs.get(name) or pipeline.ref(name)
+            kind = pipeline.type_of(ref)
             self._parts[name] = [p for arm in arms(kind) for p in _parts(name, arm)]
             for part in self._parts[name]:
-                for column in _columns_of_part(part, kind):
+                within = (*ref.path, part.field) if part.field else ref.path
+                told = told_of(pipeline, replace(ref, path=within))
+                for column in _columns_of_part(part, kind, told):
                     known = found.setdefault(column.key, column)
-                    if known.kind is not column.kind:
-                        found[column.key] = replace(known, kind=_common(known.kind, column.kind))
+                    found[column.key] = _shared(known, column)
         lead = [Column(key, "", key, "", int if key == "item" else str) for key in OBJECT]
         self.columns = (*LEAD, *lead, *found.values())
 
@@ -228,14 +250,15 @@ def _parts(output: str, kind: Any) -> Iterator[_Part]:
             yield _Part(output, name, inner)
 
 
-def _columns_of_part(part: _Part, kind: Any) -> Iterator[Column]:
+def _columns_of_part(part: _Part, kind: Any, told: Told) -> Iterator[Column]:
     of = kind if part.item is None else part.item
     for arm in arms(of):
-        for column in columns_of_type(part.output, arm):
+        for column in columns_of_type(part.output, arm, told):
             yield replace(column, key=_key(column.key, part.output))
     for error in error_names(of):
         head, _, unit = error.rpartition("_")
-        yield Column(f"{head}_error_{unit}", part.output, head, unit, float, error)
+        key = f"{head}_error_{unit}"
+        yield Column(key, part.output, *words_and_unit(error), float, error)
 
 
 def _key(key: str, output: str) -> str:
@@ -256,8 +279,23 @@ def _cells(value: Any, result: Outcomes) -> Row:
     return row
 
 
+def _shared(known: Column, other: Column) -> Column:
+    """Return the column of values of two outputs."""
+    quantities = _joined(known.quantities, other.quantities)
+    return replace(known, kind=_common(known.kind, other.kind), quantities=quantities)
+
+
+def _joined(one: ByFrame | None, other: ByFrame | None) -> ByFrame | None:
+    if not one or not other:
+        return None if one is other is None else {}
+    found = {q: {its[q] for its in (one, other) if q in its} for q in {*one, *other}}
+    return {q: names.pop() if len(names) == 1 else "" for q, names in found.items()}
+
+
 def _common(one: type, other: type) -> type:
     both = {one, other}
+    if len(both) == 1:
+        return one
     if both <= {int, float}:
         return float
     return str

@@ -37,6 +37,9 @@ class Pair(NamedTuple):
         (Image(np.array([[np.inf, 1.0]])), "values holds 1 of 2"),
         (Image(np.array([[np.inf, 1.0]]), valid=np.array([[False, True]])), ""),
         (Mask(np.array([[True]]), (math.inf, 1.0)), "pitch_cm holds 1 of 2"),
+        (Image(np.ma.array([[1.0, 2.0]], mask=[[True, False]])), ""),
+        (np.ma.array([1.0, np.nan], mask=[False, True]), ""),
+        (np.ma.array([1.0, np.nan, 2.0], mask=[True, False, False]), "holds 1 of 2"),
     ],
 )
 def test_a_number_that_is_none_is_told_by_its_path(value: Any, told: str) -> None:

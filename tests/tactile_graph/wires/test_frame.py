@@ -154,3 +154,16 @@ def test_a_true_shape_with_its_shorter_side_first_is_the_same_one_turned() -> No
     np.testing.assert_allclose(*corners)
     for shape in (Rectangle(3.0, 4.0, 6.0, 2.0, 0.3), Ellipse(3.0, 4.0, 2.0, 2.0, 0.3)):
         assert TrueObject(shape).shape is shape
+
+
+@pytest.mark.parametrize("dtype", [float, int, object])
+def test_masked_cells_are_invalid_as_nan_cells_are(dtype: type) -> None:
+    masked = np.ma.masked_equal(np.array([[1, 65535], [3, 4]], dtype=dtype), 65535)
+    image = Frame.of(masked).image
+    assert type(image.values) is np.ndarray
+    assert image.valid is not None
+    assert image.valid.tolist() == [[True, False], [True, True]]
+    assert image.total == 8.0
+    assert image.values[0, 1] == 0.0
+    assert masked.data[0, 1] == 65535
+    assert Frame.of(np.ma.array([[1.0, 2.0]])).image.valid is None

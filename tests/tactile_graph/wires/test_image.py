@@ -19,6 +19,7 @@ from tactile_graph.wires import (
     quick_points,
     quick_polygon,
 )
+from tactile_graph.wires.stacks import ImageStack
 
 
 @pytest.mark.parametrize("kind", [np.float16, np.longdouble])
@@ -79,3 +80,20 @@ def test_packed_rows_are_laid_out_as_kernels_take_them() -> None:
     assert mask.words.flags.c_contiguous
     assert mask.words.dtype == np.uint64
     assert mask.words.tolist() == [0, 2, 4]
+
+
+def test_masked_cells_of_an_image_are_invalid_and_those_of_a_mask_off() -> None:
+    values = np.ma.masked_equal(np.array([[1.0, 9.0], [3.0, 4.0]]), 9.0)
+    valid = np.array([[True, True], [True, False]])
+    image = Image(values, valid=valid)
+    assert type(image.values) is np.ndarray
+    assert not image.values.flags.writeable
+    assert image.valid is not None
+    assert image.valid.tolist() == [[True, False], [True, False]]
+    assert image.total == 4.0
+    assert Image(np.ma.array([[1.0, 2.0]])).valid is None
+    assert Mask(values > 0.5).count == 3
+    stack = ImageStack(np.ma.stack([values, values]))
+    assert type(stack.values) is np.ndarray
+    assert stack.valid is not None
+    assert stack[1].total == 8.0

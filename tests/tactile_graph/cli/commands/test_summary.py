@@ -194,3 +194,66 @@ def test_more_rows_and_more_recordings_take_no_more_memory(monkeypatch: pytest.M
         tracemalloc.stop()
         assert (found.frames, len(found.recordings)) == (20_000, n_recordings)
     assert most[40] < 1.3 * most[20]
+
+
+def test_numbers_in_different_units_are_different_quantities() -> None:
+    head = "frame,time_s,label,load.outcome,load.total,load.x_cm\n"
+    for name, total, unit in (("v", 1, "V"), ("g", 1000, "g")):
+        Path(f"{name}.csv").write_text(f"{head}0,0.0,,ok,{total},2\n1,0.5,,ok,{3 * total},4\n")
+        Path(f"{name}.csv.meta.json").write_text(json.dumps({"columns": {"load.total": unit}}))
+    for names in (("v.csv", "g.csv"), ("g.csv", "v.csv")):
+        told = of(*names)
+        means = {k: (q["unit"], q["n"], q["mean"]) for k, q in told["quantities"].items()}
+        assert means == {
+            "load.total [V]": ("V", 2, 2.0), "load.total [g]": ("g", 2, 2000.0),
+            "load.x_cm": ("cm", 4, 3.0),
+        }  # fmt: skip
+        units = [r["quantities"]["load.total"]["unit"] for r in told["recordings"]]
+        assert units == ["V" if name == "v.csv" else "g" for name in names]
+    lines = [line.split() for line in call("summary", "v.csv", "g.csv").stdout.splitlines()]
+    rows = [line[:5] for line in lines if line[:1] == ["load"] and line[3:4] in (["2"], ["4"])]
+    assert rows == [
+        ["load", "total", "V", "2", "2"], ["load", "total", "g", "2", "2000"],
+        ["load", "x", "cm", "4", "3.000"],
+    ]  # fmt: skip
+
+
+def test_where_no_number_is_finite_the_ends_are_left_empty() -> None:
+    line = '{"frame": 1, "outputs": {"c": {"x_cm": 1e400}, "n": %s}}\n' % 10**400
+    Path("inf.jsonl").write_text(line)
+    done = call("summary", "inf.jsonl")
+    assert done.exit_code == 0, done.output
+    (row,) = (line.split() for line in done.stdout.splitlines() if line.startswith("c x"))
+    assert row == ["c", "x", "cm", "0", "(+1", "no", "number)"]
+    assert (of("inf.jsonl")["quantities"]["n"]["n"], "inf " in done.stdout) == (0, False)
+
+
+@pytest.mark.parametrize("again", ["out.csv", "./out.csv", "link.csv"])
+def test_a_file_that_is_given_twice_is_refused(again: str) -> None:
+    Path("link.csv").symlink_to("out.csv")
+    done = call("summary", "out.csv", again)
+    assert done.exit_code == 2
+    assert "is given twice" in done.stderr
+    assert ("(also as out.csv)" in done.stderr) == (again == "link.csv")
+    assert call("summary", "out.csv", "long.csv").exit_code == 0
+
+
+def test_frames_without_numbers_are_refused_in_every_format() -> None:
+    pq = pytest.importorskip("pyarrow.parquet")
+    arrow = pytest.importorskip("pyarrow")
+    Path("x.csv").write_text("frame,n.outcome\none,ok\n")
+    pq.write_table(arrow.table({"frame": ["one"], "n.outcome": ["ok"]}), "x.parquet")
+    Path("x.jsonl").write_text('{"frame": "one", "outputs": {}}\n')
+    for name in ("x.csv", "x.parquet"):
+        done = call("summary", name)
+        assert done.exit_code == 2
+        assert f"{name}: is no result of a run: column 'frame' must hold numbers, got 'one'" in (
+            done.stderr
+        )
+    done = call("summary", "x.jsonl")
+    assert "x.jsonl:1: is no line of a run: 'frame' must be a number, got 'one'" in done.stderr
+
+
+def test_numbers_under_names_of_long_tables_are_numbers_in_others() -> None:
+    Path("type.csv").write_text("frame,type.outcome,type\n0,ok,1.5\n1,ok,2.5\n")
+    assert of("type.csv")["quantities"]["type"]["mean"] == 2.0

@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from helpers_cli import call
+from helpers_graphs import registry
+from tactile_graph import Frame, Image, loads
 from tactile_graph.cli.output import parquet
+from tactile_graph.engine.tables.columns import Column, OutputColumns
+from tactile_graph.engine.tables.table import FrameTable
+from tactile_graph.errors import UsageError
 
 FILE = """
 pipeline: many
@@ -20,6 +28,18 @@ nodes:
   objects: {step: split_contacts, in: [frame, footprint]}
 outputs: [objects]
 """
+
+
+BIG = """
+pipeline: big
+nodes:
+  n: {step: big, in: frame}
+outputs: [n]
+"""
+
+
+def big(image: Image) -> int:
+    return 2**70
 
 
 @pytest.fixture(autouse=True)
@@ -78,3 +98,73 @@ def test_forms_that_a_format_does_not_have_are_refused(words: tuple[str, ...], s
     done = call("run", "many.yaml", "--frames", 1, *words)
     assert done.exit_code == 2
     assert said in done.stderr
+
+
+def of_volts_and_grams() -> None:
+    """Write two recordings of two frames, one in volts and one in grams."""
+    for name, quantity in (("v.npz", "volt"), ("g.npz", "gram")):
+        values = np.zeros((2, 4, 4))
+        values[:, 1:3, 1:3] = 5.0
+        np.savez(name, values=values, quantity=quantity, pitch_cm=[1.0, 1.0], origin_cm=[0, 0])
+
+
+def units_and_rows(name: str) -> tuple[dict[str, str], int, int]:
+    """Return the units in a file, and how many groups and rows it has."""
+    file = pytest.importorskip("pyarrow.parquet").ParquetFile(name)
+    return parquet.units_in(file.schema_arrow), file.num_row_groups, file.metadata.num_rows
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("more", [(), ("--workers", 2)], ids=["alone", "workers"])
+def test_frames_in_several_units_leave_a_column_without_one_whichever_came_first(
+    more: tuple[Any, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("pyarrow")
+    monkeypatch.setattr(parquet, "ROWS_A_GROUP", 2)
+    of_volts_and_grams()
+    for names, unit in ((("v.npz", "g.npz"), None), (("g.npz",), "g")):
+        done = call("run", "contacts", *names, "-o", "out.parquet", *more)
+        assert done.exit_code == 0, done.output
+        units, groups, rows = units_and_rows("out.parquet")
+        assert (units.get("load.total"), units["load.x_cm"]) == (unit, "cm")
+        assert rows == 2 * len(names) <= 2 * groups
+        told = json.loads(Path("out.parquet.meta.json").read_text())["columns"]
+        assert told["load.total"] == (unit or "")
+        said = "frames are in gram and volt: load.total, load.peak have no one unit"
+        assert (said in done.stderr) == (unit is None)
+    assert not list(Path().glob(".*.part"))
+
+
+def test_parts_that_differ_in_units_are_joined_without_them() -> None:
+    arrow = pytest.importorskip("pyarrow")
+    pq = pytest.importorskip("pyarrow.parquet")
+    parts = []
+    for unit in ("V", "g"):
+        fields = [("frame", "1"), ("load.total", unit)]
+        schema = arrow.schema([arrow.field(n, arrow.float64(), metadata={"unit": u})
+                               for n, u in fields])  # fmt: skip
+        part = io.BytesIO()
+        pq.write_table(arrow.table([[1.0], [2.0]], schema=schema), part)
+        parts.append(part.getvalue())
+    assert parquet.PARQUET.joined is not None
+    with Path("joined.parquet").open("wb") as file:
+        parquet.PARQUET.joined(iter(parts), file)
+        n_bytes = file.tell()
+    assert units_and_rows("joined.parquet") == ({"frame": "1"}, 1, 2)
+    assert Path("joined.parquet").stat().st_size == n_bytes
+    assert pq.read_table("joined.parquet")["load.total"].to_pylist() == [2.0, 2.0]
+
+
+def test_a_whole_number_beyond_64_bits_is_refused_by_name() -> None:
+    pytest.importorskip("pyarrow")
+    table = FrameTable([OutputColumns("n", (Column("n", "n", "", "", int),), ())])
+    writer = parquet.ParquetFile("out.parquet", table)
+    pipeline = loads(BIG, "big.yaml", registry({"big": big}))
+    writer.write(pipeline.run(Frame.of([[1.0]])))
+    with pytest.raises(UsageError) as found:
+        writer.close()
+    assert str(found.value) == (
+        f"-o out.parquet: column 'n' holds {2**70}, and whole numbers in Parquet have 64 bits; "
+        ".csv and .jsonl take it"
+    )
+    assert not list(Path().glob("*out.parquet*"))

@@ -14,6 +14,7 @@ from tactile_graph.engine.tables.table import ObjectTable, make_table, units_of
 from tactile_graph.errors import UsageError
 from tactile_graph.vocabulary import words_and_unit
 from tactile_graph.wires import TrueObject
+from tactile_graph.wires.frame_stack import FrameStack
 
 
 class Found(NamedTuple):
@@ -88,7 +89,7 @@ def test_objects_have_their_errors_where_the_truth_is_known() -> None:
 def test_every_column_of_numbers_has_a_unit_and_sums_of_readings_have_the_frames() -> None:
     pipeline = load("contacts")
     table = ObjectTable(pipeline, ("load", "contacts"))
-    units = units_of(table, "kilopascal")
+    units = units_of(table, ["kilopascal"])
     numbers = {c.key for c in table.columns if c.kind in (int, float)}
     assert units.keys() == numbers
     assert (units["x_cm"], units["load"], units["peak"], units["count"]) == (
@@ -97,13 +98,55 @@ def test_every_column_of_numbers_has_a_unit_and_sums_of_readings_have_the_frames
         "kPa",
         "1",
     )
-    assert units_of(table, "counts")["load"] == "counts"
+    assert units_of(table, ["counts"])["load"] == "counts"
+
+
+class Outcome(NamedTuple):
+    outcome: str
+    total: float
+
+
+def graded(image: Image) -> Outcome:
+    return Outcome("good", 2.0)
+
+
+def total(image: Image) -> float:
+    return float(image.total)
+
+
+def test_a_name_that_the_table_has_itself_is_nobody_elses() -> None:
+    nodes = """
+pipeline: p
+nodes:
+  graded: {step: graded, in: frame}
+  time_s: {step: total, in: frame}
+  label: {step: total, in: frame}
+outputs: [graded, time_s, label]
+"""
+    pipeline = loads(nodes, "p.yaml", registry({"graded": graded, "total": total}))
+    table = make_table(pipeline, tuple(pipeline.outputs), long=False)
+    keys = [c.key for c in table.columns]
+    assert len(keys) == len({*keys})
+    frames = [frame(3.0, i, time_s=0.5) for i in range(40)]
+    (row, *_) = table.rows(pipeline.run(frames[0]))
+    told = {"graded.outcome": "ok", "graded.outcome.value": "good", "graded.total": 2.0}
+    assert row == {
+        "frame": 0, "time_s": 0.5, "label": "", **told, "time_s.outcome": "ok",
+        "time_s.value": 12.0, "label.outcome": "ok", "label.value": 12.0,
+    }  # fmt: skip
+    columns = table.of_block(pipeline.runner().block(FrameStack.of(frames)))
+    assert {key: column[0] for key, column in columns.items()} == row
+    assert pipeline.run(frames[0]).row() == {
+        "frame": 0, "time_s": 0.5, "graded.outcome.value": "good", "graded.total": 2.0,
+        "time_s.value": 12.0, "label.value": 12.0,
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize(
     ("name", "expected"),
     [("vx_cm_s", ("vx", "cm/s")), ("age_s", ("age", "s")), ("area_cm2", ("area", "cm²")),
-     ("cm", ("cm", "")), ("n_points", ("n points", ""))],
+     ("pressure_n_cm2", ("pressure", "N/cm²")), ("drift_v_s", ("drift", "V/s")),
+     ("n_s", ("n", "s")), ("cm", ("cm", "")), ("n_points", ("n points", ""))],
 )  # fmt: skip
 def test_a_name_is_words_and_a_unit(name: str, expected: tuple[str, str]) -> None:
     assert words_and_unit(name) == expected
