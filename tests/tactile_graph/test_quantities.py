@@ -54,6 +54,8 @@ def test_a_units_name_alone_is_no_field_of_it() -> None:
     ("name", "expected"),
     [
         ("pressure_n_cm2", ("pressure", "N/cm²")),
+        ("torque_n_cm", ("torque", "")),
+        ("impulse_n_s", ("impulse", "")),
         ("speed_mm_s", ("speed", "mm/s")),
         ("gain_v_g", ("gain", "V/g")),
         ("mean_load_g_cm2", ("mean load", "g/cm²")),
