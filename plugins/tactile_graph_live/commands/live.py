@@ -179,7 +179,7 @@ def _opened(name: str | None, recordings: Sequence[str], asked: _Options) -> Pip
 
 def _captured(recordings: Sequence[str], asked: _Options) -> tuple[str, tuple[str, ...]]:
     """Return the source step of a pad on this machine, and its settings as the command has them."""
-    from tactile_graph_live.server.draft import spelled
+    from tactile_graph_live.server.yaml_settings import spelled
     from tactile_graph_sources.commands.captured import captured
 
     if asked.source or recordings:

@@ -15,9 +15,10 @@ pytest.importorskip("starlette", reason="the live extra is not installed")
 
 import tactile_graph as tg
 from tactile_graph.cli.watch import files_read, stamp
-from tactile_graph.errors import PipelineError
+from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph_live.bench.wire import Swap, Swapped
 from tactile_graph_live.server import editor as module
+from tactile_graph_live.server import yaml_settings
 from tactile_graph_live.server.draft import Draft
 from tactile_graph_live.server.editor import Edited, Editor
 from tactile_graph_live.server.messages import Trouble
@@ -194,6 +195,19 @@ def test_a_value_that_is_not_allowed_is_raised_to_who_asked(desk: Desk) -> None:
     async def change() -> None:
         with pytest.raises(PipelineError, match="level_v"):
             await desk.editor.set("footprint", "level_v", "high")
+
+    desk.play(change)
+    assert desk.swaps == []
+
+
+def test_a_value_that_cannot_be_written_into_the_file_runs_nowhere(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(yaml_settings, "_with_one", lambda text, *_: f"{text}}}")
+
+    async def change() -> None:
+        with pytest.raises(UsageError, match=r"footprint\.level_v: cannot be written"):
+            await desk.editor.set("footprint", "level_v", 0.02)
 
     desk.play(change)
     assert desk.swaps == []
