@@ -212,10 +212,27 @@ def _setup(opened: Pipeline, asked: _Options) -> Setup:
         opened,
         version("tactile-graph"),
         folder_of(asked.folder),
-        FileSense(stamp, files_read),
+        FileSense(stamp, files_read, read_source),
         order,
         asked.osc,
     )
+
+
+def read_source(pipeline: Pipeline) -> None:
+    """Open the pads, scenes and presets that a pipeline's source names.
+
+    Raises
+    ------
+    PipelineError
+        If one of them is wrong.
+    """
+    from tactile_graph.cli.source_files import problems_of_records
+    from tactile_graph.errors import PipelineError
+    from tactile_graph.plugins.registry import installed
+
+    problems = problems_of_records(installed(), pipeline.source) if pipeline.source else []
+    if problems:
+        raise PipelineError(problems)
 
 
 def _variant(name: str, opened: Pipeline) -> Pipeline:

@@ -12,6 +12,7 @@ from tactile_graph import Pipeline, load, loads
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, shown, text_of
 from tactile_graph.foreign_text import visible
 from tactile_graph_live.server.messages import Fault
+from tactile_graph_live.server.watching import Stamps
 from tactile_graph_live.server.yaml_settings import Settings, text_with
 
 MOST_FAULTS = 50
@@ -31,12 +32,15 @@ class Draft:
         What the command line set, node -> setting -> value.
     set_here : mapping
         What was set on the page.
+    source_files : mapping
+        The files that the source names, but for recordings, and what told when they were saved.
     """
 
     pipeline: Pipeline
     base: str
     given: Settings = field(default_factory=dict)
     set_here: Settings = field(default_factory=dict)
+    source_files: Stamps = field(default_factory=dict)
 
     @classmethod
     def of(cls, pipeline: Pipeline) -> Draft:
@@ -121,11 +125,13 @@ class Draft:
         return pipeline.with_settings(flat, source) if flat or source else pipeline
 
     def same_source(self, other: Draft) -> bool:
-        """Return whether two drafts take their frames from the same source."""
+        """Return whether two drafts take their frames from the same source, its files the same."""
         ours, theirs = self.pipeline.source, other.pipeline.source
         if ours is None or theirs is None:
             return ours is theirs
-        return (ours.name, repr(ours.settings)) == (theirs.name, repr(theirs.settings))
+        return (ours.name, repr(ours.settings), self.source_files) == (
+            theirs.name, repr(theirs.settings), other.source_files
+        )  # fmt: skip
 
 
 def _merged(first: Settings, second: Settings) -> dict[str, dict[str, Any]]:
