@@ -1,4 +1,7 @@
-"""Write files that are there whole or not at all, and say beforehand what cannot be written."""
+"""Write files that are there whole or not at all, and say beforehand what cannot be written.
+
+Who watches files hears here of those that are looked for and not there.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ import os
 import re
 import signal
 import stat
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -19,6 +23,8 @@ from tactile_graph.errors import UsageError
 from tactile_graph.part_files import part_of
 
 Name = str | os.PathLike[str]
+LOOKED_FOR = "tactile_graph.looked_for"
+"""Python's audit event of a file that is not there, with its path."""
 _ERRNO = re.compile(r"\berrno\W+(\d+)", re.I)
 
 
@@ -189,6 +195,14 @@ def is_plain(name: Name) -> bool:
         return stat.S_ISREG(os.stat(name).st_mode)
     except OSError:
         return True
+
+
+def looked_for(name: Name) -> None:
+    """Tell who watches files of one that is not there: of those that are opened, Python tells.
+
+    Whoever finds out by other means than opening it calls this, so that it is seen to come.
+    """
+    sys.audit(LOOKED_FOR, os.fspath(name))
 
 
 def check_target(option: str, name: Name) -> None:

@@ -21,15 +21,21 @@ def problems_of_source(found: Registry, source: Source) -> list[Problem]:
     steps that read recordings the one that takes the path does. Of a recording the first frame is
     read.
     """
-    problems: list[Problem] = []
-    for name, value in source.settings.items():
-        if isinstance(value, str) and found.has("file_kinds", name):
-            problems += _of_record(found, source, name, value)
+    problems = problems_of_records(found, source)
     if found.has("readers", source.name):
         setting = str(found.offer("readers", source.name).target)
         for path in _listed(source.settings.get(setting)):
             settings = {**source.settings, setting: path}
             problems += _of_recording(replace(source, settings=settings), setting)
+    return problems
+
+
+def problems_of_records(found: Registry, source: Source) -> list[Problem]:
+    """Return what is wrong with the files that a source's settings name, but for recordings."""
+    problems: list[Problem] = []
+    for name, value in source.settings.items():
+        if isinstance(value, str) and found.has("file_kinds", name):
+            problems += _of_record(found, source, name, value)
     return problems
 
 

@@ -10,6 +10,8 @@ from contextlib import contextmanager
 from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
+from tactile_graph.files import LOOKED_FOR
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -47,15 +49,24 @@ def watch(
     Returns
     -------
     bool
-        Whether all was right at the last look that came to its end.
+        Whether all was right at the last look that came to its end; where there is no file to
+        watch that is the first.
     """
     right = False
     always = [os.fspath(path) for path in named]
+    stamps: dict[str, Stamp] = {}
     try:
         while True:
-            stamps = {path: stamp(path) for path in always}
-            with files_read(stamps):
+            before = {path: stamp(path) for path in [*always, *stamps]}
+            read: dict[str, Stamp] = {}
+            with files_read(read):
                 right = look()
+            # What is wrong may keep a file from being read, or be that it is gone.
+            kept = before if not right else {p: before[p] for p in before if p in read}
+            stamps = read | {p: before[p] for p in always} | kept
+            if not stamps:
+                out.print("there is no file to watch", style="dim")
+                return right
             out.print(f"watching {_counted(len(stamps))}; Ctrl-C ends", style="dim")
             changed = _next_change(stamps, wait)
             out.print()
@@ -92,7 +103,7 @@ def stamp(path: str) -> Stamp:
 
 @contextmanager
 def files_read(stamps: dict[str, Stamp]) -> Iterator[None]:
-    """Enter each file of data that is opened meanwhile, as it is when it is opened."""
+    """Enter each file of data that is opened meanwhile, as it is then, or looked for in vain."""
     global _reading
     _install()
     _reading = stamps
@@ -115,10 +126,12 @@ def _install() -> None:
 
 
 def _note(event: str, args: tuple[Any, ...]) -> None:
-    if event != "open" or _reading is None or not isinstance(args[0], str | os.PathLike):
+    if event not in ("open", LOOKED_FOR) or _reading is None:
+        return
+    if not isinstance(args[0], str | os.PathLike):
         return
     path = os.fspath(args[0])
-    to_read = not isinstance(args[1], str) or args[1].startswith("r")
+    to_read = event != "open" or not isinstance(args[1], str) or args[1].startswith("r")
     if not isinstance(path, str) or not to_read or not path.endswith(DATA) or path in _reading:
         return
     if not any(folder in path for folder in PACKAGES):

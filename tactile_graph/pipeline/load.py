@@ -9,6 +9,7 @@ from textwrap import shorten
 from typing import Any, NamedTuple
 
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, did_you_mean
+from tactile_graph.files import looked_for
 from tactile_graph.pipeline.declaration import declare
 from tactile_graph.pipeline.document import Document, read_document, text_of_file
 from tactile_graph.pipeline.graph import Graph
@@ -95,7 +96,10 @@ def find(name: str | Path, registry: Registry, file: str = "") -> Path:
 def _is_file(path: Path) -> bool:
     """Return whether there is something to read: a file, a pipe, /dev/stdin."""
     try:
-        return path.exists() and not path.is_dir()
+        if path.exists():
+            return not path.is_dir()
+        looked_for(path)
+        return False
     except PermissionError:  # reading it says so
         return True
     except OSError:  # a name that no file can have

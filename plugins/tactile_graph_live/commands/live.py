@@ -179,7 +179,7 @@ def _opened(name: str | None, recordings: Sequence[str], asked: _Options) -> Pip
 
 def _captured(recordings: Sequence[str], asked: _Options) -> tuple[str, tuple[str, ...]]:
     """Return the source step of a pad on this machine, and its settings as the command has them."""
-    from tactile_graph_live.server.draft import spelled
+    from tactile_graph_live.server.yaml_settings import spelled
     from tactile_graph_sources.commands.captured import captured
 
     if asked.source or recordings:
@@ -212,10 +212,27 @@ def _setup(opened: Pipeline, asked: _Options) -> Setup:
         opened,
         version("tactile-graph"),
         folder_of(asked.folder),
-        FileSense(stamp, files_read),
+        FileSense(stamp, files_read, read_source),
         order,
         asked.osc,
     )
+
+
+def read_source(pipeline: Pipeline) -> None:
+    """Open the pads, scenes and presets that a pipeline's source names.
+
+    Raises
+    ------
+    PipelineError
+        If one of them is wrong.
+    """
+    from tactile_graph.cli.source_files import problems_of_records
+    from tactile_graph.errors import PipelineError
+    from tactile_graph.plugins.registry import installed
+
+    problems = problems_of_records(installed(), pipeline.source) if pipeline.source else []
+    if problems:
+        raise PipelineError(problems)
 
 
 def _variant(name: str, opened: Pipeline) -> Pipeline:

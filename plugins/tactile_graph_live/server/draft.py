@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
-
-import yaml
 
 from tactile_graph import Pipeline, load, loads
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, shown, text_of
 from tactile_graph.foreign_text import visible
-from tactile_graph.pipeline.document import in_yaml
 from tactile_graph_live.server.messages import Fault
+from tactile_graph_live.server.watching import Stamps
+from tactile_graph_live.server.yaml_settings import Settings, text_with
 
-Settings = Mapping[str, Mapping[str, Any]]
-"""Node -> setting -> value."""
 MOST_FAULTS = 50
 LONGEST_FAULT = 2000
 
@@ -34,21 +32,37 @@ class Draft:
         What the command line set, node -> setting -> value.
     set_here : mapping
         What was set on the page.
+    source_files : mapping
+        The files that the source names, but for recordings, and what told when they were saved.
     """
 
     pipeline: Pipeline
     base: str
     given: Settings = field(default_factory=dict)
     set_here: Settings = field(default_factory=dict)
+    source_files: Stamps = field(default_factory=dict)
 
     @classmethod
     def of(cls, pipeline: Pipeline) -> Draft:
-        """Return the draft of a pipeline as a command line opened it."""
-        return cls(pipeline, pipeline.text, pipeline.overrides)
+        """Return the draft of a pipeline as a command line opened it.
 
-    @property
+        Raises
+        ------
+        UsageError
+            If the file is spelled so that the settings given there cannot be written into it.
+        """
+        return cls(pipeline, pipeline.text, pipeline.overrides)._spelled()
+
+    @cached_property
     def text(self) -> str:
-        """The YAML of the pipeline as it runs, but for what the command line says of its source."""
+        """The YAML of the pipeline as it runs, but for what the command line says of its source.
+
+        Raises
+        ------
+        UsageError
+            If the file is spelled so that its settings cannot be written into it; no draft is
+            given out that has no text.
+        """
         return text_with(self.base, _merged(self.given, self.set_here))
 
     def read_again(self) -> Draft:
@@ -60,7 +74,7 @@ class Draft:
             If it is wrong.
         """
         fresh = load(Path(self.pipeline.file))
-        return Draft(self._resolved(fresh, self.given), fresh.text, self.given)
+        return Draft(self._resolved(fresh, self.given), fresh.text, self.given)._spelled()
 
     def with_value(self, node: str, setting: str, value: Any) -> Draft:
         """Return the draft with a setting changed on the page.
@@ -90,7 +104,7 @@ class Draft:
                 for n, values in self.set_here.items()}  # fmt: skip
         return self._set(here)
 
-    @property
+    @cached_property
     def file_text(self) -> str:
         """The YAML without what was set on the page."""
         return text_with(self.base, self.given)
@@ -98,7 +112,12 @@ class Draft:
     def _set(self, here: Settings) -> Draft:
         base = loads(self.base, self.pipeline.file)
         pipeline = self._resolved(base, _merged(self.given, here))
-        return replace(self, pipeline=pipeline, set_here=here)
+        return replace(self, pipeline=pipeline, set_here=here)._spelled()
+
+    def _spelled(self) -> Draft:
+        """Return the draft, whose YAML is made now: it is too late once the pipeline runs."""
+        _ = self.text, self.file_text
+        return self
 
     def _resolved(self, pipeline: Pipeline, settings: Settings) -> Pipeline:
         flat = {f"{n}.{s}": v for n, values in settings.items() for s, v in values.items()}
@@ -106,11 +125,13 @@ class Draft:
         return pipeline.with_settings(flat, source) if flat or source else pipeline
 
     def same_source(self, other: Draft) -> bool:
-        """Return whether two drafts take their frames from the same source."""
+        """Return whether two drafts take their frames from the same source, its files the same."""
         ours, theirs = self.pipeline.source, other.pipeline.source
         if ours is None or theirs is None:
             return ours is theirs
-        return (ours.name, repr(ours.settings)) == (theirs.name, repr(theirs.settings))
+        return (ours.name, repr(ours.settings), self.source_files) == (
+            theirs.name, repr(theirs.settings), other.source_files
+        )  # fmt: skip
 
 
 def _merged(first: Settings, second: Settings) -> dict[str, dict[str, Any]]:
@@ -159,76 +180,6 @@ def faults(error: BaseException, file: str) -> tuple[Fault, ...]:
 
 def _raw(error: BaseException) -> str:
     return f"{type(error).__name__}: {text_of(error)}".removesuffix(": ")
-
-
-# -- settings into the text ----------------------------------------------------------------------
-
-
-def text_with(text: str, settings: Settings) -> str:
-    """Return a pipeline's YAML with settings changed in it; all else stays, comments too.
-
-    Parameters
-    ----------
-    text : str
-        A pipeline file without faults.
-    settings : mapping
-        Node -> setting -> value; of ``used/node`` it is written where ``used`` is declared.
-    """
-    for node, values in settings.items():
-        declared, _, within = node.partition("/")
-        for setting, value in values.items():
-            name = f"{within}.{setting}" if within else setting
-            text = _with_one(text, declared, name, spelled(value))
-    return text
-
-
-def spelled(value: Any) -> str:
-    """Return a value as YAML on one line."""
-    dumped = in_yaml(value, default_flow_style=True, width=10**9, allow_unicode=True)
-    return dumped.strip().removesuffix("...").strip()
-
-
-def _with_one(text: str, node: str, setting: str, value: str) -> str:
-    root = yaml.compose(text, Loader=yaml.SafeLoader)
-    declared = _value(_value(root, "nodes"), node)
-    if not isinstance(declared, yaml.MappingNode):
-        return text
-    given = _value(declared, "with")
-    if given is None:
-        return _added(text, declared, "with", f"{{{setting}: {value}}}")
-    now = _value(given, setting)
-    if now is None:
-        return _added(text, given, setting, value)
-    end = now.end_mark.index
-    old = text[now.start_mark.index : end]
-    end -= len(old) - len(old.rstrip())  # a block's mark stands where the next thing begins
-    return text[: now.start_mark.index] + value + text[end:]
-
-
-def _value(mapping: yaml.Node | None, key: str) -> yaml.Node | None:
-    if not isinstance(mapping, yaml.MappingNode):
-        return None
-    found: list[yaml.Node] = [v for k, v in mapping.value if k.value == key]
-    return found[0] if found else None
-
-
-def _added(text: str, mapping: yaml.Node, key: str, value: str) -> str:
-    """Return the text with a key added to a mapping, written as the mapping is."""
-    assert isinstance(mapping, yaml.MappingNode | yaml.ScalarNode)
-    if not isinstance(mapping, yaml.MappingNode):  # ``with:`` and nothing behind it
-        at = mapping.start_mark.index
-        return f"{text[:at]} {{{key}: {value}}}{text[at:]}"
-    if mapping.flow_style:
-        at = mapping.end_mark.index - 1
-        head = text[:at].rstrip()
-        comma = "" if head.endswith(("{", ",")) else ","
-        return f"{head}{comma}{'' if head.endswith('{') else ' '}{key}: {value}{text[at:]}"
-    first, its = mapping.value[0]
-    if isinstance(its, yaml.ScalarNode) and its.start_mark.line == its.end_mark.line:
-        at = its.end_mark.index
-        return f"{text[:at]}\n{' ' * first.start_mark.column}{key}: {value}{text[at:]}"
-    at = first.start_mark.index
-    return f"{text[:at]}{key}: {value}\n{' ' * first.start_mark.column}{text[at:]}"
 
 
 def save(folder: Path, name: str, text: str) -> Path:

@@ -6,16 +6,18 @@ import asyncio
 import pickle
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
+from tactile_graph.errors import TactileGraphError
 from tactile_graph_live.bench.wire import Swap, Swapped
 from tactile_graph_live.server.draft import Draft, faults
 from tactile_graph_live.server.graph_message import graph_message
 from tactile_graph_live.server.lookback import Lookback
 from tactile_graph_live.server.messages import Fault, Graph, Trouble
 from tactile_graph_live.server.unawaited import unawaited
-from tactile_graph_live.server.watching import SETTLE_S, FileSense, Watched
+from tactile_graph_live.server.watching import SETTLE_S, FileSense, Stamps, Watched
 
 SLOW_S = 2.0
 """After so long it is told that a pipeline is still being made ready."""
@@ -64,9 +66,9 @@ class Editor:
         self._seed = seed
         self._swap, self._changed, self._wrong, self._say = swap, changed, wrong, say
         self._version = 1
+        self._read_source = sense.read_source
         self._watched = Watched(sense, [draft.pipeline.file])
-        self._watched.take(draft.read_again)  # to know what else is read with it
-        self.now = self._edited(draft, 1)
+        self.now = self._edited(replace(draft, source_files=self._watch_all_of(draft)), 1)
         self.trouble: Trouble | None = None
         self._of_file: tuple[Fault, ...] = ()
         self._lock = asyncio.Lock()
@@ -107,10 +109,22 @@ class Editor:
                 return
             await self._apply(draft, began, of_file=True)
 
+    def _watch_all_of(self, draft: Draft) -> Stamps:
+        """Watch all that is read with a file that is right; return what its source reads."""
+
+        def read_source() -> None:
+            with suppress(TactileGraphError):  # the bench tells what keeps it from its frames
+                self._read_source(draft.pipeline)
+
+        return self._watched.take(draft.read_again, read_source)[1]
+
     def _read(self) -> Draft:
         found: list[Draft] = []
-        self._watched.take(lambda: found.append(self.now.draft.read_again()))
-        return found[0]
+        _, source_files = self._watched.take(
+            lambda: found.append(self.now.draft.read_again()),
+            lambda: self._read_source(found[0].pipeline),
+        )
+        return replace(found[0], source_files=source_files)
 
     # -- the page ----------------------------------------------------------------------------------
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+from collections import ChainMap
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+
+from tactile_graph import Pipeline
 
 Stamp = tuple[int, int, int] | None
 Stamps = dict[str, Stamp]
@@ -25,28 +28,42 @@ class FileSense:
         Returns what changes of a file when it is saved.
     reading : callable
         Returns a context in which every file that is opened is entered into a dict with its stamp.
+    read_source : callable
+        Opens the files that a pipeline's source names, but for recordings, which are long or grow.
+        Raises `PipelineError` if one is wrong.
     """
 
     stamp: Callable[[str], Stamp]
     reading: Callable[[Stamps], AbstractContextManager[None]]
+    read_source: Callable[[Pipeline], None]
 
 
 class Watched:
-    """The files a pipeline was read from."""
+    """The files a pipeline was read from, and those that were looked for."""
 
     def __init__(self, sense: FileSense, named: Iterable[str]) -> None:
         self._sense = sense
         self._named = tuple(named)
         self._stamps: Stamps = {name: sense.stamp(name) for name in self._named}
 
-    def take(self, read: Callable[[], object]) -> None:
-        """Have the files read, and watch from now on what was read."""
-        stamps = {name: self._sense.stamp(name) for name in self._named}
+    def take(self, *reads: Callable[[], object]) -> list[Stamps]:
+        """Have files read, and watch from now on what was read; return what each has read.
+
+        Where one raises, what was watched before is watched on: it may be that a file is gone.
+        """
+        before = {name: self._sense.stamp(name) for name in (*self._named, *self._stamps)}
+        each: list[Stamps] = []
+        kept: set[str] = set(before)
         try:
-            with self._sense.reading(stamps):
-                read()
+            for read in reads:
+                each.append({})
+                with self._sense.reading(each[-1]):
+                    read()
+            kept &= {*self._named, *ChainMap(*each)}
         finally:
-            self._stamps |= {k: v for k, v in stamps.items() if RECORDED not in k}
+            found = {k: v for k, v in ChainMap(*each).items() if RECORDED not in k}
+            self._stamps = found | {name: before[name] for name in kept}
+        return each
 
     def changed(self) -> bool:
         """Return whether a file is no longer what it was when it was read."""

@@ -17,6 +17,7 @@ from tactile_graph.errors import (
     one_of,
     shown,
 )
+from tactile_graph.files import looked_for
 from tactile_graph.pipeline.document import MOST_PROBLEMS, Document, read_document, text_of_file
 from tactile_graph.plugins.registry import installed
 from tactile_graph_sources.devices import preset as records
@@ -81,7 +82,10 @@ def _merged(path: Path, deepest: int) -> tuple[Document, dict[str, Any]]:
 
 def _is_file(path: Path) -> bool:
     try:
-        return path.is_file()
+        if path.is_file():
+            return True
+        looked_for(path)
+        return False
     except (OSError, ValueError):  # a name that no file can have
         return False
 

@@ -11,8 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from tactile_graph import load
 from tactile_graph.cli.terminal import console
 from tactile_graph.cli.watch import SETTLED_S, watch
+from tactile_graph.errors import PipelineError
 
 
 class Editor:
@@ -84,6 +86,56 @@ def test_a_file_that_is_gone_is_waited_for(folder: Path) -> None:
     named = folder / "named.yaml"
     seen, *_ = looks(folder, [named.unlink, nothing, lambda: named.write_text("back")])
     assert seen == ["1 2", "2", "back 2"]
+
+
+def test_a_file_that_was_read_and_is_gone_is_waited_for_while_something_is_wrong(
+    folder: Path,
+) -> None:
+    named, used, seen = folder / "named.yaml", folder / "used.yaml", []
+
+    def look() -> bool:
+        uses = "used" in named.read_text()
+        seen.append(used.read_text() if uses and used.exists() else "gone" if uses else "unused")
+        return seen[-1] != "gone"
+
+    named.write_text("used")
+    deeds: list[Callable[[], object]] = [
+        used.unlink,
+        lambda: used.write_text("back"),
+        lambda: used.write_text("again"),
+        lambda: named.write_text("alone"),
+        lambda: used.write_text("nobody reads it"),
+        nothing,
+    ]
+    assert watch(look, [named], console(), Editor(deeds))
+    assert seen == ["2", "gone", "back", "again", "unused"]
+
+
+def test_a_pipeline_that_is_used_before_it_is_there_is_seen_to_come(folder: Path) -> None:
+    named, used = folder / "named.yaml", folder / "later.yaml"
+    one = "pipeline: p\nnodes: {l: {step: load, in: frame}}\noutputs: [l]\n"
+    named.write_text(one.replace("step: load", "use: later.yaml"))
+    seen = []
+
+    def look() -> bool:
+        try:
+            load(named)
+        except PipelineError as error:
+            seen.append(str(error))
+            return False
+        return True
+
+    assert watch(look, [named], console(), Editor([lambda: used.write_text(one)]))
+    assert len(seen) == 1
+    assert "no pipeline file 'later.yaml'" in seen[0]
+
+
+@pytest.mark.parametrize("right", [True, False])
+def test_where_there_is_no_file_the_first_look_is_the_last(
+    right: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert watch(lambda: right, [], console(), Editor([nothing])) is right
+    assert capsys.readouterr().out == "there is no file to watch\n"
 
 
 def test_what_changes_during_a_look_is_looked_at_once_more(folder: Path) -> None:

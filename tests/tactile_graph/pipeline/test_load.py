@@ -16,6 +16,7 @@ from annotated_types import Ge, Gt, Len, MultipleOf
 from helpers_graphs import STEPS, Count, registry
 from tactile_graph import Frame, Image, Mask, loads
 from tactile_graph.api.pipeline import load
+from tactile_graph.cli.watch import Stamp, files_read
 from tactile_graph.errors import PipelineError, PluginError, UsageError
 from tactile_graph.steps import Grid, Quantity
 
@@ -655,3 +656,27 @@ def test_the_order_is_the_same_under_two_hash_seeds() -> None:
     ]
     assert outputs[0] == outputs[1]
     assert "form a cycle" in outputs[0]
+
+
+USES_OTHER = "pipeline: p\nnodes: {best: {use: other.yaml, in: frame}}\noutputs: [best]\n"
+
+
+def test_a_pipeline_that_another_uses_is_looked_for_beside_it_and_here(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    (folder / "p.yaml").write_text(USES_OTHER)
+    monkeypatch.chdir(tmp_path)
+    found: dict[str, Stamp] = {}
+    with files_read(found), pytest.raises(PipelineError, match="no pipeline file"):
+        load("folder/p.yaml")
+    missing = {path for path, stamp in found.items() if stamp is None}
+    assert missing == {os.path.join("folder", "other.yaml"), "other.yaml"}
+
+
+def test_a_name_is_looked_for_as_no_file() -> None:
+    found: dict[str, Stamp] = {}
+    with files_read(found), pytest.raises(UsageError, match="no pipeline named"):
+        load("nothing")
+    assert not [path for path, stamp in found.items() if stamp is None]

@@ -8,7 +8,7 @@ import pytest
 
 import tactile_graph as tg
 from tactile_graph.errors import PipelineError, UsageError
-from tactile_graph_live.server.draft import Draft, faults, save, spelled, text_with
+from tactile_graph_live.server.draft import Draft, faults, save
 
 FLOW = """\
 pipeline: mine
@@ -19,64 +19,6 @@ nodes:
   boundary: {step: boundary_scan, in: footprint}
 outputs: [boundary]
 """
-BLOCK = """\
-pipeline: mine
-source: {step: sample, with: {name: discs}}
-nodes:
-  smooth:
-    # why it is smoothed
-    step: low_pass
-    in: frame
-  footprint:
-    step: threshold
-    in: smooth
-    with:
-      level_v: 0.01   # volts
-  boundary: {step: boundary_scan, in: footprint}
-outputs: [boundary]
-"""
-
-
-def lines_that_differ(a: str, b: str) -> list[str]:
-    return [line for line in b.splitlines() if line not in a.splitlines()]
-
-
-@pytest.mark.parametrize("text", [FLOW, BLOCK])
-def test_a_setting_that_is_there_is_changed_in_its_place(text: str) -> None:
-    changed = text_with(text, {"footprint": {"level_v": 0.02}})
-    (line,) = lines_that_differ(text, changed)
-    assert "level_v: 0.02" in line
-    assert changed.replace("0.02", "0.01") == text
-
-
-@pytest.mark.parametrize("text", [FLOW, BLOCK])
-def test_a_setting_that_is_not_there_is_added_and_comments_stay(text: str) -> None:
-    node = tg.loads(text).nodes["smooth"]
-    assert node.signature is not None
-    name = node.signature.settings[0].name
-    value = node.settings[name]
-    changed = text_with(text, {"smooth": {name: value}})
-    assert f"with: {{{name}: {spelled(value)}}}" in changed
-    assert "# why it is smoothed" in changed or "# as it comes" in changed
-    assert tg.loads(changed).key == tg.loads(text).key
-
-
-def test_a_second_setting_is_added_to_those_that_are_there() -> None:
-    node = "  a: {step: simulate_me, with: {x: 1}}\n"
-    text = f"pipeline: p\nnodes:\n{node}"
-    assert "with: {x: 1, y: [2, 3]}" in text_with(text, {"a": {"y": [2, 3]}})
-    block = "pipeline: p\nnodes:\n  a:\n    step: s\n    with:\n      x: 1\n"
-    assert "      x: 1\n      y: word\n" in text_with(block, {"a": {"y": "word"}})
-
-
-def test_values_are_spelled_so_that_yaml_reads_them_back() -> None:
-    import yaml
-
-    for value in (0.5, 1e-7, True, None, "yes", "a: b", [1, 2], {"a": 1}, "µ", "1"):
-        assert yaml.safe_load(spelled(value)) == value
-        assert "\n" not in spelled(value)
-
-
 NESTED = """\
 pipeline: nested
 source: {step: sample, with: {name: discs}}

@@ -15,9 +15,11 @@ pytest.importorskip("starlette", reason="the live extra is not installed")
 
 import tactile_graph as tg
 from tactile_graph.cli.watch import files_read, stamp
-from tactile_graph.errors import PipelineError
+from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph_live.bench.wire import Swap, Swapped
+from tactile_graph_live.commands.live import read_source
 from tactile_graph_live.server import editor as module
+from tactile_graph_live.server import yaml_settings
 from tactile_graph_live.server.draft import Draft
 from tactile_graph_live.server.editor import Edited, Editor
 from tactile_graph_live.server.messages import Trouble
@@ -36,8 +38,8 @@ outputs: [boundary]
 class Desk:
     """An editor of a file, and a bench that answers as it is told to."""
 
-    def __init__(self, path: Path) -> None:
-        path.write_text(FLOW)
+    def __init__(self, path: Path, flow: str = FLOW) -> None:
+        path.write_text(flow)
         self.path = path
         self.swaps: list[Swap] = []
         self.changes: list[Edited] = []
@@ -45,7 +47,7 @@ class Desk:
         self.said: list[str] = []
         self.answer: Callable[[Swap], Swapped | None] = lambda swap: Swapped(swap.version)
         self.editor = Editor(
-            Draft.of(tg.load(path)), 0, FileSense(stamp, files_read),
+            Draft.of(tg.load(path)), 0, FileSense(stamp, files_read, read_source),
             swap=self._swap, changed=self.changes.append, wrong=self.troubles.append,
             say=self.said.append,
         )  # fmt: skip
@@ -199,6 +201,19 @@ def test_a_value_that_is_not_allowed_is_raised_to_who_asked(desk: Desk) -> None:
     assert desk.swaps == []
 
 
+def test_a_value_that_cannot_be_written_into_the_file_runs_nowhere(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(yaml_settings, "_with_one", lambda text, *_: f"{text}}}")
+
+    async def change() -> None:
+        with pytest.raises(UsageError, match=r"footprint\.level_v: cannot be written"):
+            await desk.editor.set("footprint", "level_v", 0.02)
+
+    desk.play(change)
+    assert desk.swaps == []
+
+
 def test_settings_are_taken_back_one_or_all(desk: Desk) -> None:
     desk.play(
         lambda: desk.editor.set("footprint", "level_v", 0.02),
@@ -217,6 +232,83 @@ def test_another_source_starts_anew_and_what_began_anew_is_told(desk: Desk) -> N
     desk.play(desk.editor.reload)
     assert desk.swaps[-1].restart
     assert desk.changes[-1].graph.anew == ("tracks",)
+
+
+USED = """\
+pipeline: used
+nodes: {footprint: {step: threshold, in: frame, with: {level_v: 0.03}}}
+outputs: [footprint]
+"""
+USES = FLOW.replace("{step: threshold, in: frame, with: {level_v: 0.01}}", "{use: used.yaml}")
+
+
+@pytest.mark.slow
+def test_a_used_file_that_is_gone_is_told_and_so_are_its_return_and_other_mistakes(
+    desk: Desk,
+) -> None:
+    used = desk.path.with_name("used.yaml")
+
+    async def seen(n: int) -> None:
+        end = asyncio.get_running_loop().time() + 10
+        while len(desk.troubles) < n and asyncio.get_running_loop().time() < end:
+            await asyncio.sleep(0.01)
+        assert len(desk.troubles) == n
+
+    async def work() -> None:
+        watching = asyncio.create_task(desk.editor.watch())
+        desk.save(USES)
+        await seen(1)  # it is not there yet
+        used.write_text(USED)
+        await seen(2)
+        used.unlink()
+        await seen(3)
+        desk.save(USES.replace("use:", "usee:"))
+        await seen(4)
+        watching.cancel()
+
+    desk.play(work)
+    texts = [" ".join(fault.text for fault in trouble.errors) for trouble in desk.troubles]
+    assert "no pipeline file 'used.yaml'" in texts[0]
+    assert texts[1] == ""
+    assert "no pipeline file 'used.yaml'" in texts[2]
+    assert "unknown key 'usee'" in texts[3]
+
+
+@pytest.fixture
+def played(tmp_path: Path) -> Desk:
+    """Return the desk of a file whose source reads a scene and a pad."""
+    source = f"{{scene: {tmp_path / 'scene.yaml'}, pad: {tmp_path / 'pad.yaml'}, frames: 9}}"
+    (tmp_path / "scene.yaml").write_text("about: nothing on it\n")
+    (tmp_path / "pad.yaml").write_text("about: as it comes\n")
+    flow = FLOW.replace("sample, with: {name: discs}", f"simulate, with: {source}")
+    return Desk(tmp_path / "mine.yaml", flow)
+
+
+@pytest.mark.parametrize("name", ["scene.yaml", "pad.yaml"])
+def test_what_the_source_reads_is_watched_and_starts_it_anew(played: Desk, name: str) -> None:
+    file = played.path.with_name(name)
+    played.save(played.path.read_text().replace("0.01", "0.02"))
+    played.play(played.editor.reload)
+    assert not played.swaps[-1].restart
+    file.write_text("about: another\n")
+    assert played.editor._watched.changed()
+    played.play(played.editor.reload)
+    assert played.swaps[-1].restart
+    played.play(played.editor.reload, lambda: played.editor.set("footprint", "level_v", 0.05))
+    assert [swap.restart for swap in played.swaps[-2:]] == [False, False]
+
+
+def test_what_is_wrong_with_a_scene_is_told_until_it_is_right(played: Desk) -> None:
+    scene = played.path.with_name("scene.yaml")
+    scene.write_text("about: [nonsense")
+    played.play(played.editor.reload)
+    (fault,) = played.troubles[-1].errors
+    assert "scene.yaml:1:17: this is not YAML" in fault.text
+    assert played.swaps == []
+    scene.write_text("about: nothing again\n")
+    played.play(played.editor.reload)
+    assert played.troubles[-1].errors == ()
+    assert played.swaps[-1].restart
 
 
 def test_a_save_is_seen_by_itself(desk: Desk) -> None:

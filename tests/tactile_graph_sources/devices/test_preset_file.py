@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from helpers_serial import KITS
+from tactile_graph.cli.watch import Stamp, files_read
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import installed
 from tactile_graph_sources.devices.preset_file import PresetError, load_preset
@@ -136,3 +137,10 @@ def test_an_unknown_name_says_what_is_near() -> None:
         load_preset("flexitac-12x33")
     with pytest.raises(UsageError, match=r"preset file 'no/such.yaml' does not exist"):
         load_preset("no/such.yaml")
+
+
+def test_who_watches_files_hears_of_a_preset_that_is_not_there(tmp_path: Path) -> None:
+    found: dict[str, Stamp] = {}
+    with files_read(found), pytest.raises(UsageError, match="does not exist"):
+        load_preset(str(tmp_path / "mine.yaml"))
+    assert found == {str(tmp_path / "mine.yaml"): None}

@@ -93,6 +93,13 @@ def test_a_mistake_is_a_line_and_exit_code_2(args: list[str], message: str) -> N
     assert message in got.stderr
 
 
+def test_where_no_file_is_named_there_is_nothing_to_wait_for() -> None:
+    got = call("check", "--watch", "-")
+    assert got.exit_code == 2
+    assert got.stdout.startswith("-: wrong\n")
+    assert got.stdout.endswith("there is no file to watch\n")
+
+
 def test_a_plugins_kind_that_is_none_is_told_by_plugin(
     hand_made: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
