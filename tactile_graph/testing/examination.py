@@ -20,7 +20,7 @@ from tactile_graph.testing.finite import not_finite
 from tactile_graph.testing.inputs import Maker, Makers, Unmakeable
 from tactile_graph.testing.links import link_trouble
 from tactile_graph.testing.same import same
-from tactile_graph.testing.shown import unshown
+from tactile_graph.testing.shown import unsaid, unshown
 from tactile_graph.testing.stacks import mixed, stack_trouble
 from tactile_graph.testing.subject import Bound, Subject
 from tactile_graph.testing.trial import FIRST_S, LEAST_S, TIMES, Trial, attempt
@@ -163,6 +163,7 @@ class Examination:
         if trial.answered:
             misfit = self.subject.misfit(inputs, trial.value)
             self._tell(case.name, misfit or _bad(trial.value) or unshown(trial.value))
+            self._tell(case.name, unsaid(self.subject.signature, inputs, trial.value))
         return trial
 
     def _try(self, call: Callable[..., Any], inputs: Inputs) -> Trial:

@@ -191,6 +191,47 @@ class HandsOutItsState:
         return Mask(self._sum, mask.pitch_cm)
 
 
+def says_badly(mask: Mask) -> int:
+    return mask.count
+
+
+def broken_notice(mask: Mask) -> str:
+    raise ValueError(f"{mask.count} cells")
+
+
+says_badly.notice = broken_notice  # type: ignore[attr-defined]
+
+
+def says_of_no_port(mask: Mask) -> int:
+    return mask.count
+
+
+says_of_no_port.notice = lambda msk, value: ""  # type: ignore[attr-defined]
+
+
+class Assuming(NamedTuple):
+    x_cm: float
+
+    @property
+    def assumed(self) -> str:
+        raise KeyError("nobody")
+
+
+def assumes_badly(mask: Mask) -> Assuming:
+    return Assuming(1.0)
+
+
+class Summed(NamedTuple):
+    x_cm: float
+
+    def summary(self) -> dict[str, float]:
+        return [self.x_cm]  # type: ignore[return-value]
+
+
+def sums_badly(mask: Mask) -> Summed:
+    return Summed(1.0)
+
+
 BROKEN: list[tuple[Callable[..., Any], str]] = [
     (writes_through, "writes into its input mask; change a copy"),
     (writes, "raises ValueError: output array is read-only"),
@@ -211,6 +252,10 @@ BROKEN: list[tuple[Callable[..., Any], str]] = [
     (ends_the_program, "raises SystemExit: nothing pressed"),
     (never_ends, "values of 1e-100 (and 1 more case): was stopped after"),
     (BreaksWarmedUp, "an ordinary frame (and 16 more cases): gives as good what is none"),
+    (says_badly, "its notice cannot be had: ValueError: "),
+    (says_of_no_port, "its notice asks for 'msk', which is none of its ports; did you mean 'mask'"),
+    (assumes_badly, "its assumed cannot be had: KeyError: 'nobody'"),
+    (sums_badly, "its summary cannot be had: PluginError: Summed.summary() must return a mapping"),
     (HandsOutItsState, "writes into what it gave before; give a copy"),
 ]
 
