@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 
 from tactile_graph.errors import PipelineError, TactileGraphError, text_of
 from tactile_graph.plugins.names import Plugin, singular
 from tactile_graph.plugins.registry import Registry
-from tactile_graph.testing.check import examine_step
+from tactile_graph.testing.check import StepReport, examine_step
 
 FILES = ("pads", "presets", "scenes")
 
@@ -38,7 +39,10 @@ class PluginReport:
 
 
 def examine_plugin(
-    plugin: Plugin, registry: Registry, told: Callable[[str], None] = lambda what: None
+    plugin: Plugin,
+    registry: Registry,
+    told: Callable[[str], None] = lambda what: None,
+    examine: Callable[[str], StepReport] | None = None,
 ) -> PluginReport:
     """Return what is wrong with all that a plugin offers.
 
@@ -49,7 +53,10 @@ def examine_plugin(
     registry : Registry
     told : callable, optional
         Told what is looked at next, such as ``step 'median'``.
+    examine : callable, optional
+        Tries a step by its name; `examine_step` in this process if not given.
     """
+    examine = examine or partial(examine_step, registry=registry)
     report = PluginReport(plugin)
     if plugin.error:
         report.broken.append(plugin.error)
@@ -60,15 +67,15 @@ def examine_plugin(
             told(what)
             report.n_offers += 1
             if kind == "steps":
-                _look_at_step(report, registry, name)
+                _look_at_step(report, examine, name)
             else:
                 report.broken += [f"{what}: {w}" for w in _wrong(registry, kind, name)]
     report.clashes += [told for told in registry.clashes if plugin.label in told]
     return report
 
 
-def _look_at_step(report: PluginReport, registry: Registry, name: str) -> None:
-    found = examine_step(name, registry=registry)
+def _look_at_step(report: PluginReport, examine: Callable[[str], StepReport], name: str) -> None:
+    found = examine(name)
     report.broken += found.lines()
     if found.untried:
         report.untried[name] = found.untried

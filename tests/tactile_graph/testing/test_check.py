@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import threading
+import time
 from collections.abc import Callable
 from typing import Annotated, Any, NamedTuple
 
@@ -16,7 +17,9 @@ from tactile_graph.errors import UsageError
 from tactile_graph.steps import Grid, Quantity
 from tactile_graph.testing import BrokenPromises, Case, all_cases, check_step, examine_step
 from tactile_graph.testing import examination as trials
+from tactile_graph.testing import trial as calls
 from tactile_graph.vocabulary import QUANTITIES
+from tactile_graph.wires.stacks import Column, MaskStack
 
 
 def all_finite(image: Image) -> None:
@@ -276,6 +279,67 @@ def test_what_is_broken_is_told_in_a_line(
     assert [line for line in lines if told in line], lines
     assert all(line.startswith(f"step {step.__name__!r}: ") for line in lines)
     assert len(lines) == 1 or step in SEVERAL
+
+
+def waits(image: Image) -> float:
+    time.sleep(60.0)
+    return 1.0
+
+
+@pytest.mark.slow
+def test_a_step_that_waits_for_ever_is_told_after_one_case(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(calls, "WAITS_S", 0.3)
+    report = examine_step(waits)
+    (line,) = report.lines()
+    assert line.startswith("step 'waits': an ordinary frame: was stopped after 0.")
+    assert report.n_cases == 1
+
+
+def sleepy(image: Image) -> float:
+    all_finite(image)
+    if image.shape != (8, 9):
+        time.sleep(60.0)
+    return 1.0
+
+
+def test_no_more_cases_are_tried_once_several_took_too_long(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(calls, "WAITS_S", 0.03)
+    report = examine_step(sleepy)
+    assert report.n_cases < 10
+    (line,) = report.lines()
+    assert "(and 2 more cases): was stopped after " in line
+
+
+class Spot:
+    def __init__(self, x_cm: float) -> None:
+        self.x_cm = x_cm
+
+
+def spot(mask: Mask) -> Spot:
+    """Return a record that does not say when another equals it."""
+    return Spot(float(mask.count))
+
+
+def test_a_record_without_an_equality_is_held_against_another_by_its_content() -> None:
+    assert check_step(spot).n_values > 15
+
+
+def short(mask: Mask) -> float:
+    return float(mask.count)
+
+
+def two_values(mask: MaskStack) -> Column:
+    return Column(np.zeros(3))
+
+
+short.stacked = two_values  # type: ignore[attr-defined]
+
+
+def test_the_same_fault_of_a_stacked_form_is_one_line() -> None:
+    (line,) = examine_step(short).lines()
+    assert line.endswith("gives no stack of as many values as it took: Column of 3")
 
 
 def test_a_signature_that_does_not_hold_together_is_told() -> None:
