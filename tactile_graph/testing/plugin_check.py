@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from tactile_graph.errors import PipelineError, TactileGraphError, text_of
-from tactile_graph.plugins.names import Plugin, singular
+from tactile_graph.plugins.names import Plugin, qualified, singular
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.testing.check import StepReport, examine_step
 
@@ -62,7 +62,7 @@ def examine_plugin(
         report.broken.append(plugin.error)
     for kind in registry.kinds:
         for plain in plugin.offers.get(kind, ()):
-            name = registry.spelled(kind, f"{plugin.name}.{plain}")
+            name = registry.spelled(kind, qualified(plugin.name, plain))
             what = f"{singular(kind)} {name!r}"
             told(what)
             report.n_offers += 1
