@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, Outcome, raised_at
 from tactile_graph.engine.plan import Plan
-from tactile_graph.errors import shown, text_of
+from tactile_graph.errors import PluginError, shown, text_of
 from tactile_graph.pipeline.graph import Node
 from tactile_graph.pipeline.wiring import Ref
 
@@ -88,6 +88,11 @@ def breaks(what: str, error: Exception) -> str:
     where = raised_at(error)
     told = " ".join(f"{type(error).__name__}: {text_of(error)}".split()).removesuffix(":")
     return f"its {what} breaks: {told}" + (f" ({where})" if where else "")
+
+
+def untold(output: str, what: str, error: Exception) -> PluginError:
+    """Return the error that names the output whose value could not be written out."""
+    return PluginError(f"output {output!r}: {breaks(what, error)}")
 
 
 def assumed_by(value: Any) -> str:

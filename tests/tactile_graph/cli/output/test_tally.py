@@ -207,3 +207,45 @@ def test_a_notice_that_breaks_is_told_by_its_node_and_the_run_goes_on(
     explained = call("explain", "p.yaml", "r.txt")
     assert explained.exit_code == 0
     assert "notice  h: its notice breaks: ValueError: no voice" in explained.stdout
+
+
+@dataclass
+class Columnless:
+    x_cm: float
+    columns_shown = ("gone_cm",)
+
+
+@dataclass
+class Summing:
+    x_cm: float
+
+    def summary(self) -> dict[str, float]:
+        raise LookupError("no sum")
+
+
+def columnless(image: Image) -> Columnless:
+    return Columnless(image.peak)
+
+
+def summing(image: Image) -> Summing:
+    return Summing(image.peak)
+
+
+@pytest.mark.parametrize(
+    ("step", "form", "told"),
+    [
+        (columnless, "csv", "output 'n': its row of numbers breaks: AttributeError: "),
+        (columnless, "jsonl", "output 'n': its line of JSON breaks: AttributeError: "),
+        (summing, "jsonl", "output 'n': its line of JSON breaks: LookupError: no sum ("),
+    ],
+)
+def test_a_record_that_cannot_be_written_is_told_by_its_output(
+    hand_made: Path, monkeypatch: pytest.MonkeyPatch, step: Any, form: str, told: str
+) -> None:
+    install(monkeypatch, hand_made, steps={"s": step})
+    (hand_made / "r.txt").write_text("1\n2\n")
+    text = "{pipeline: p, nodes: {n: {step: s, in: frame}}, outputs: [n]}"
+    (hand_made / "p.yaml").write_text(text)
+    got = call("run", "p.yaml", "r.txt", "--format", form)
+    assert got.exit_code == 2
+    assert f"error: {told}" in got.stderr
