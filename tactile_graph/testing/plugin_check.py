@@ -5,8 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Any, get_args
 
-from tactile_graph.errors import PipelineError, TactileGraphError, text_of
+from tactile_graph.errors import (
+    PipelineError,
+    TactileGraphError,
+    did_you_mean,
+    one_of,
+    shown,
+    text_of,
+)
+from tactile_graph.exporter import Exporter, Holds
 from tactile_graph.plugins.names import Plugin, qualified, singular
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.testing.check import StepReport, examine_step
@@ -95,11 +104,19 @@ def _wrong(registry: Registry, kind: str, name: str) -> Iterator[str]:
         elif kind == "readers":
             registry.step(name)
         elif registry.is_imported(kind):
-            registry.load(kind, name)
+            yield from _wrong_holding(registry.load(kind, name))
     except PipelineError as error:
         yield from (str(p).partition("\n")[0] for p in error.problems)
     except TactileGraphError as error:
         yield " ".join(text_of(error).split())
+
+
+def _wrong_holding(offer: Any) -> Iterator[str]:
+    """Yield why an exporter could not be told what it is to be given."""
+    allowed = get_args(Holds)
+    if isinstance(offer, Exporter) and offer.holds not in allowed:
+        hint = did_you_mean(offer.holds, allowed)
+        yield f"it holds {shown(offer.holds)}, must be one of {one_of(allowed)}{hint}"
 
 
 def _read(registry: Registry, kind: str, name: str) -> None:

@@ -110,7 +110,8 @@ def _ending(name: str, form: str | None) -> str:
         ending = next((e for e in (f".{form}", form) if installed().has(OFFERS, e)), None)
         if ending is None:
             near = did_you_mean(form, forms())
-            raise UsageError(f"--format {form}: is none of {', '.join(forms())}{near}")
+            missing = installed().missing_plugins()
+            raise UsageError(f"--format {form}: is none of {', '.join(forms())}{near}{missing}")
         return ending
     if name.endswith(("/", os.sep)):
         return FOLDER
@@ -126,4 +127,7 @@ def _ending(name: str, form: str | None) -> str:
             f"-o {name}: is a folder; name a file in it, or end it in / for a data set of Parquet"
         )
     near = did_you_mean(path.suffix.lower(), known) if path.suffix else ""
-    raise UsageError(f"-o {name}: its name must end in {', '.join(known)}, or give --format{near}")
+    missing = installed().missing_plugins()
+    raise UsageError(
+        f"-o {name}: its name must end in {', '.join(known)}, or give --format{near}{missing}"
+    )

@@ -24,8 +24,7 @@ def tactile_graph_exporters():
 
 class Words:
     def __init__(self, export):
-        self.name, self.broken = export.name, False
-        self.n = 0
+        self.name, self.n = export.name, 0  # and no word of what is broken
 
     def write(self, result):
         self.n += 1
@@ -83,3 +82,14 @@ def test_a_name_that_is_an_ending_alone_has_none(exporters: Path, name: str) -> 
     got = call("run", "p.yaml", "-o", name)
     assert got.exit_code == 2
     assert f"-o {name}: its name must end in " in got.stderr
+
+
+@pytest.mark.parametrize("args", [("-o", "x.rst"), ("-o", "x", "--format", "rst")])
+def test_that_a_plugin_is_down_is_said_where_its_ending_is_missing(
+    hand_made: Path, monkeypatch: pytest.MonkeyPatch, args: tuple[str, ...]
+) -> None:
+    install(monkeypatch, hand_made, ("words", "in-words", "1", lambda: import_module("tg_gone")))
+    (hand_made / "p.yaml").write_text(TEXT)
+    got = call("run", "p.yaml", *args)
+    assert got.exit_code == 2
+    assert "(plugins failed to load: words)" in got.stderr
