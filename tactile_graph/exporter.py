@@ -18,7 +18,7 @@ class Writer(Protocol):
     """Takes results while they come."""
 
     broken: bool
-    """Whether something could not be written."""
+    """Whether something could not be written; a writer without it leaves nothing out."""
 
     def write(self, result: Result) -> None:
         """Take in a frame; raises `UsageError` if it cannot be written."""
@@ -72,6 +72,9 @@ def check_plain(name: str) -> None:
         check_target("-o", name)
 
 
+Holds = Literal["records", "numbers", "images"]
+
+
 class Exporter(NamedTuple):
     """How ``run`` writes files of one form.
 
@@ -92,7 +95,7 @@ class Exporter(NamedTuple):
     """
 
     called: str
-    holds: Literal["records", "numbers", "images"]
+    holds: Holds
     opened: Callable[[Export], Writer]
     check: Callable[[str], None] = check_plain
     joined: Callable[[Iterator[bytes], BinaryIO], None] | None = None

@@ -24,16 +24,20 @@ def show_checked(found: Registry, name: str) -> bool:
         If there is no such plugin, or none of others.
     """
     from tactile_graph.cli.terminal import console
+    from tactile_graph.testing.apart import Apart
     from tactile_graph.testing.plugin_check import examine_plugin
 
     out = console()
     right = True
+    apart = Apart(found)
     for plugin in _asked(found, name):
         with out.status(plugin.name) as status:
-            report = examine_plugin(plugin, found, lambda what: status.update(f"trying {what}"))
+            told = lambda what: status.update(f"trying {what}")  # noqa: E731
+            report = examine_plugin(plugin, found, told, apart.examine)
         report.broken += [*_wrong_readers(found, plugin), *hidden_commands(plugin)]
         _show(out, report)
         right &= not report.broken
+    apart.close()
     return right
 
 

@@ -7,16 +7,16 @@ axes, `paint_svg` into SVG.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.engine.outcomes.outcome import Done, Failed, Skipped, outcome_word
+from tactile_graph.engine.outcomes.outcome import Done, Failed, Skipped, outcome_word, raised_at
 from tactile_graph.engine.tables.rows import scalars
-from tactile_graph.errors import PluginError, shown
+from tactile_graph.errors import PluginError, shown, text_of
 from tactile_graph.wires import Circle, Frame, Image, Mask, Points, TrueObject
 
 Role = Literal["found", "true"]
@@ -193,7 +193,7 @@ class _Listing:
             self._other(value, alone)
 
     def _drawing(self, value: Any) -> None:
-        for record in value.drawing():
+        for record in _asked(value, "drawing", lambda: [*value.drawing()]):
             if not isinstance(record, Drawn):
                 who = f"{type(value).__name__}.drawing()"
                 raise PluginError(f"{who} must give records to draw, got {shown(record)}")
@@ -203,7 +203,8 @@ class _Listing:
 
     def _outline(self, value: Any) -> None:
         with np.errstate(invalid="ignore"):  # of a shape that is nowhere
-            xy_cm = np.asarray(value.outline_cm(), dtype=np.float64).reshape(-1, 2)
+            told = _asked(value, "outline_cm", value.outline_cm)
+            xy_cm = np.asarray(told, dtype=np.float64).reshape(-1, 2)
         circle = value if isinstance(value, Circle) else None
         closed = bool(getattr(value, "outline_closed", True))
         self.records.append(Outline(xy_cm, circle, self.role, closed))
@@ -250,6 +251,17 @@ class _Listing:
             return  # where it is says enough of one of several
         found = scalars("", value) or {"": value}
         self.records += [Note(name.lstrip("."), v) for name, v in found.items()]
+
+
+def _asked(value: Any, method: str, ask: Callable[[], Any]) -> Any:
+    """Return what a record's own method gives to draw."""
+    try:
+        return ask()
+    except Exception as error:  # a plugin's own code may raise anything
+        told = f"{type(error).__name__}: {text_of(error)}"
+        raise PluginError(
+            f"{type(value).__name__}.{method}() breaks: {told} ({raised_at(error)})"
+        ) from error
 
 
 def draws_itself(value: Any) -> bool:

@@ -16,13 +16,14 @@ from tactile_graph.compiled.kernel import is_warm, mode
 from tactile_graph.engine.deadlines.allowed import Deciding, ladder, where_allowed
 from tactile_graph.engine.operations.fields import field_getter
 from tactile_graph.engine.operations.first_of import first_of
-from tactile_graph.engine.operations.freeze import FROZEN, IMMUTABLE, freeze
+from tactile_graph.engine.operations.freeze import FROZEN, IMMUTABLE
 from tactile_graph.engine.operations.guards import guarded
 from tactile_graph.engine.operations.step_operation import (
     Block,
     Call,
     Operation,
     State,
+    frozen,
     step_operation,
 )
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, Skipped, failure
@@ -286,7 +287,7 @@ def _view(item: Item, get: Callable[[Any], Any]) -> Operation:
         if field is None:
             field = Skipped(item.name, f"{item.name} is not known")
         elif field.__class__ not in FROZEN:
-            field = freeze(field)  # a property may make its array anew
+            field = frozen(field, item.name)  # a property may make its array anew
         state[slot] = field
         if value.__class__ in IMMUTABLE:
             known, kept = value, field

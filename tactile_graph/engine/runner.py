@@ -204,8 +204,15 @@ class Runner(Generic[ResultT]):
         ------
         RuleError
             If the frame's quantity, shape or pitch breaks a rule of a step.
+        UsageError
+            If it is no frame.
         """
-        image = frame.image
+        try:
+            image = frame.image
+        except AttributeError:
+            raise UsageError(
+                f"a runner takes frames, got {type(frame).__name__}; Frame.of(values) makes one"
+            ) from None
         values = image.values
         if values.shape != self._shape or image.quantity != self._quantity or self._rules:
             self._check(image)

@@ -18,13 +18,18 @@ from tactile_graph.compiled.chained import Chained
 from tactile_graph.compiled.kernel import SWITCH_AFTER_CALLS, is_warm, mode
 from tactile_graph.engine.chains import Chain, Enter, Later, chains_of, spelled
 from tactile_graph.engine.operations.fields import field_getter
-from tactile_graph.engine.operations.freeze import FROZEN, IMMUTABLE, freeze
-from tactile_graph.engine.operations.step_operation import Call, Operation, step_label
+from tactile_graph.engine.operations.freeze import FROZEN, IMMUTABLE
+from tactile_graph.engine.operations.step_operation import (
+    Call,
+    Operation,
+    frozen,
+    settled,
+    step_label,
+)
 from tactile_graph.engine.outcomes.outcome import (
     NO_VALUE,
     Skipped,
     failure,
-    nothing_returned,
     raised,
 )
 from tactile_graph.engine.outcomes.outcomes import LATER
@@ -66,7 +71,7 @@ class Written:
         self.lines: list[str] = []
         self.names: dict[str, Any] = {
             "clock": perf_counter_ns, "FROZEN": FROZEN, "NO_VALUE": NO_VALUE,
-            "Skipped": Skipped, "raised": raised, "failure": failure, "settled": _settled,
+            "Skipped": Skipped, "raised": raised, "failure": failure, "settled": settled,
             "field": _field,
         }  # fmt: skip
 
@@ -397,14 +402,9 @@ def _plain_ports(node: Node, ports: tuple[Input, ...]) -> bool:
     return len(ports) == 2 and in_order and not any(p.lazy for p in ports)
 
 
-def _settled(value: Any, name: str, what: str) -> Any:
-    """Return what a step gave as a node's outcome."""
-    return nothing_returned(name, what) if value is None else freeze(value)
-
-
 def _field(name: str, value: Any) -> Any:
     """Return a field that is not frozen by its type as an outcome."""
-    return Skipped(name, f"{name} is not known") if value is None else freeze(value)
+    return Skipped(name, f"{name} is not known") if value is None else frozen(value, name)
 
 
 def _skipping(name: str, guard: Guard) -> Callable[..., Skipped]:

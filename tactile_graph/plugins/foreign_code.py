@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager, redirect_stdout, suppress
 from types import FrameType
 from typing import Any
 
+STDOUT, STDERR = 1, 2
+"""Descriptors."""
 SLOW_S = 5.0
 """How long an import may take until it is told who takes so long."""
 
@@ -43,7 +46,7 @@ def foreign_code(name: str, label: str) -> Iterator[None]:
     with _Signals() as signals:
         told.start()
         try:
-            with redirect_stdout(sys.stderr):
+            with redirect_stdout(sys.stderr), _stdout_to_stderr():
                 yield
         except BaseException as error:
             if signals.came is None:
@@ -53,6 +56,25 @@ def foreign_code(name: str, label: str) -> Iterator[None]:
             told.cancel()
         if signals.came is not None:  # or it may have gone on, as if none had come
             raise signals.came
+
+
+@contextmanager
+def _stdout_to_stderr() -> Iterator[None]:
+    """Have what is written to the descriptor of stdout, as libraries in C do, go to stderr."""
+    with suppress(OSError, ValueError, AttributeError):  # there may be no stdout, or a closed one
+        sys.__stdout__.flush()  # type: ignore[union-attr]
+    try:
+        kept = os.dup(STDOUT)
+    except OSError:
+        yield
+        return
+    try:
+        with suppress(OSError):  # there may be no stderr
+            os.dup2(STDERR, STDOUT)
+        yield
+    finally:
+        os.dup2(kept, STDOUT)
+        os.close(kept)
 
 
 def _tell(name: str, label: str) -> None:

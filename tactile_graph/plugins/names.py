@@ -20,6 +20,11 @@ def singular(kind: str) -> str:
     return words.removesuffix("ies") + "y" if words.endswith("ies") else words.removesuffix("s")
 
 
+def qualified(plugin: str, name: str) -> str:
+    """Return a name behind that of its plugin; the ending of a file's name has a dot already."""
+    return f"{plugin}{name}" if name.startswith(".") else f"{plugin}.{name}"
+
+
 @dataclass
 class Plugin:
     """One installed plugin: what it offers, or why it does not."""
@@ -48,8 +53,8 @@ class Offer:
 
     @property
     def qualified(self) -> str:
-        """The name behind that of the plugin: ``filters.median``."""
-        return f"{self.plugin.name}.{self.name}"
+        """The name behind that of the plugin: ``filters.median``, or ``mine.csv`` of an ending."""
+        return qualified(self.plugin.name, self.name)
 
     @property
     def identity(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import types
 import typing
 from collections.abc import Callable, Iterator
@@ -35,8 +36,42 @@ def check_signature(signature: Signature) -> None:
     PluginError
         With the first thing that does not hold together.
     """
-    for trouble in (*_defaults(signature), *_rules(signature), *_output(signature)):
+    for trouble in (
+        *_kinds(signature),
+        *_defaults(signature),
+        *_rules(signature),
+        *_output(signature),
+    ):
         raise PluginError(f"step {signature.name!r}: {trouble}")
+
+
+def _kinds(signature: Signature) -> Iterator[str]:
+    """Yield which settings have a type that could not be read from a file."""
+    for setting in signature.settings:
+        kind = next(filter(_is_bare_typed_dict, _within(setting.annotation)), None)
+        if kind is not None:
+            yield (
+                f"setting {setting.name!r}: {type_name(kind)} is a typing.TypedDict, which before "
+                "Python 3.12 cannot be checked; take the TypedDict of typing_extensions, which "
+                "comes with pydantic"
+            )
+
+
+def _is_bare_typed_dict(kind: Any) -> bool:
+    """Return whether pydantic refuses a typed dict since Python's own tells too little of itself.
+
+    https://docs.pydantic.dev/latest/errors/usage_errors/#typed-dict-version
+    """
+    before = sys.version_info < (3, 12)
+    return before and typing.is_typeddict(kind) and type(kind).__module__ == "typing"
+
+
+def _within(annotation: Any) -> Iterator[Any]:
+    """Yield a type and those it is made of."""
+    bare, _ = strip(annotation)
+    yield bare
+    for arm in get_args(bare):
+        yield from _within(arm)
 
 
 def _defaults(signature: Signature) -> Iterator[str]:

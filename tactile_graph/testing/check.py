@@ -93,6 +93,7 @@ def examine_step(
     settings: Mapping[str, Any] | None = None,
     inputs: Mapping[str, Maker] | None = None,
     registry: Registry | None = None,
+    trying: Callable[[str, float], None] = lambda case, limit_s: None,
 ) -> StepReport:
     """Return which promises a step breaks.
 
@@ -107,13 +108,15 @@ def examine_step(
         it by the steps on offer.
     registry : Registry, optional
         The installed plugins if not given.
+    trying : callable, optional
+        Told before each call in which case it is, and how many seconds of the processor it has.
     """
     name = step if isinstance(step, str) else getattr(step, "__name__", repr(step))
     try:
         subject = subject_of(step, settings or {}, registry)
         if subject.signature.kind is Kind.SOURCE:
             return StepReport(name, untried="a source is tried by running it")
-        found = examined(subject, Makers(registry or installed(), inputs or {}))
+        found = examined(subject, Makers(registry or installed(), inputs or {}), trying)
     except PluginError as error:
         what = text_of(error).removeprefix(f"step {name!r}: ")
         return StepReport(name, (Broken(("its signature",), what),))

@@ -20,7 +20,7 @@ from tactile_graph.testing.finite import not_finite
 from tactile_graph.testing.inputs import Maker, Makers, Unmakeable
 from tactile_graph.testing.links import link_trouble
 from tactile_graph.testing.same import same
-from tactile_graph.testing.shown import unshown
+from tactile_graph.testing.shown import unsaid, unshown
 from tactile_graph.testing.stacks import mixed, stack_trouble
 from tactile_graph.testing.subject import Bound, Subject
 from tactile_graph.testing.trial import FIRST_S, LEAST_S, TIMES, Trial, attempt
@@ -28,8 +28,10 @@ from tactile_graph.testing.trial import FIRST_S, LEAST_S, TIMES, Trial, attempt
 QUANTITIES_TRIED = ("volt", "gram", "counts", "siemens", "raw", "level", "binary", "kilopascal")
 MOST_WARMING = 100
 """Ordinary frames after which a step that only skipped is taken to skip them all."""
+MOST_LATE = 3
+"""Calls that took too long after which no more cases are tried."""
 WRITES_BEFORE = "writes into what it gave before; give a copy"
-_NUMBERS = re.compile(r"[-+]?\d[\d.]*(e[-+]?\d+)?")
+_NUMBERS = re.compile(r"0x[0-9a-f]+|[-+]?\d[\d.]*(e[-+]?\d+)?")
 Inputs = dict[str, Any]
 
 
@@ -59,8 +61,12 @@ class Examination:
         Processor time that a call may take; set from the ordinary case.
     n_cases, n_values : int
         Cases tried, and those that were answered with a value.
+    n_late : int
+        Calls that took too long.
     n_warming : int
         Ordinary frames a step that keeps a state skips before it first answers one.
+    trying : callable
+        Told before each call in which case it is, and what it may take.
     """
 
     subject: Subject
@@ -68,7 +74,10 @@ class Examination:
     limit_s: float = FIRST_S
     n_cases: int = 0
     n_values: int = 0
+    n_late: int = 0
     n_warming: int = 0
+    trying: Callable[[str, float], None] = lambda case, limit_s: None
+    _at: str = field(default=ORDINARY, init=False)
     _found: dict[str, Broken] = field(default_factory=dict, init=False)
 
     @property
@@ -81,6 +90,9 @@ class Examination:
         call, most = self.subject.call(), MOST_WARMING if self.subject.signature.stateful else 0
         for n in range(most + 1):
             trial = self._try(call, self._inputs(ordinary()))
+            if trial.late:
+                self.n_cases += 1
+                self._tell(ORDINARY, trial.trouble())
             if not isinstance(trial.error, Skip):
                 self.n_warming = n if trial.answered else 0
                 return trial.answered
@@ -97,6 +109,9 @@ class Examination:
         self.look_at_stack(usual, self._inputs(usual))
         self.look_at_link(usual, self._inputs(usual))
         for case in others:
+            if self.n_late >= MOST_LATE:
+                break
+            self._at = case.name
             try:
                 inputs = self._inputs(case)
             except Unmakeable:  # of this case the steps before give nothing
@@ -107,6 +122,7 @@ class Examination:
                 self.look_at(case, inputs)
                 self.look_at_stack(case, inputs)
                 self.look_at_link(case, inputs)
+        self._at = ORDINARY
         again = self._try(self._call(), self._inputs(usual))
         if kept.changed():
             self._tell(ORDINARY, WRITES_BEFORE)
@@ -163,10 +179,14 @@ class Examination:
         if trial.answered:
             misfit = self.subject.misfit(inputs, trial.value)
             self._tell(case.name, misfit or _bad(trial.value) or unshown(trial.value))
+            self._tell(case.name, unsaid(self.subject.signature, inputs, trial.value))
         return trial
 
     def _try(self, call: Callable[..., Any], inputs: Inputs) -> Trial:
-        return attempt(call, inputs, self.limit_s, self.subject.package)
+        self.trying(self._at, self.limit_s)
+        trial = attempt(call, inputs, self.limit_s, self.subject.package)
+        self.n_late += trial.late
+        return trial
 
     def _inputs(self, case: Case) -> Inputs:
         """Return new values for the ports; raises `Unmakeable`."""
@@ -215,7 +235,9 @@ class Examination:
         return True
 
 
-def examined(subject: Subject, makers: Makers) -> Examination:
+def examined(
+    subject: Subject, makers: Makers, trying: Callable[[str, float], None] = lambda case, s: None
+) -> Examination:
     """Return the examination of a step, images in the first quantity it gives a value for.
 
     Raises
@@ -229,14 +251,15 @@ def examined(subject: Subject, makers: Makers) -> Examination:
     for quantity in QUANTITIES_TRIED:
         required = [p for p in subject.signature.ports if p.required]
         ports = {p.name: makers.maker(p, quantity, subject.name) for p in required}
-        found = Examination(subject, ports)
+        found = Examination(subject, ports, trying=trying)
         first = first or found
-        if found.answers():
+        if found.answers() or found.n_late:
             break
     else:
         assert first is not None
         found = first
-    found.run()
+    if not found.n_late:  # or every case would be waited for
+        found.run()
     return found
 
 

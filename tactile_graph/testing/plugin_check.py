@@ -4,11 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
+from typing import Any, get_args
 
-from tactile_graph.errors import PipelineError, TactileGraphError, text_of
-from tactile_graph.plugins.names import Plugin, singular
+from tactile_graph.errors import (
+    PipelineError,
+    TactileGraphError,
+    did_you_mean,
+    one_of,
+    shown,
+    text_of,
+)
+from tactile_graph.exporter import Exporter, Holds
+from tactile_graph.plugins.names import Plugin, qualified, singular
 from tactile_graph.plugins.registry import Registry
-from tactile_graph.testing.check import examine_step
+from tactile_graph.testing.check import StepReport, examine_step
 
 FILES = ("pads", "presets", "scenes")
 
@@ -38,7 +48,10 @@ class PluginReport:
 
 
 def examine_plugin(
-    plugin: Plugin, registry: Registry, told: Callable[[str], None] = lambda what: None
+    plugin: Plugin,
+    registry: Registry,
+    told: Callable[[str], None] = lambda what: None,
+    examine: Callable[[str], StepReport] | None = None,
 ) -> PluginReport:
     """Return what is wrong with all that a plugin offers.
 
@@ -49,26 +62,29 @@ def examine_plugin(
     registry : Registry
     told : callable, optional
         Told what is looked at next, such as ``step 'median'``.
+    examine : callable, optional
+        Tries a step by its name; `examine_step` in this process if not given.
     """
+    examine = examine or partial(examine_step, registry=registry)
     report = PluginReport(plugin)
     if plugin.error:
         report.broken.append(plugin.error)
     for kind in registry.kinds:
         for plain in plugin.offers.get(kind, ()):
-            name = registry.spelled(kind, f"{plugin.name}.{plain}")
+            name = registry.spelled(kind, qualified(plugin.name, plain))
             what = f"{singular(kind)} {name!r}"
             told(what)
             report.n_offers += 1
             if kind == "steps":
-                _look_at_step(report, registry, name)
+                _look_at_step(report, examine, name)
             else:
                 report.broken += [f"{what}: {w}" for w in _wrong(registry, kind, name)]
     report.clashes += [told for told in registry.clashes if plugin.label in told]
     return report
 
 
-def _look_at_step(report: PluginReport, registry: Registry, name: str) -> None:
-    found = examine_step(name, registry=registry)
+def _look_at_step(report: PluginReport, examine: Callable[[str], StepReport], name: str) -> None:
+    found = examine(name)
     report.broken += found.lines()
     if found.untried:
         report.untried[name] = found.untried
@@ -88,11 +104,19 @@ def _wrong(registry: Registry, kind: str, name: str) -> Iterator[str]:
         elif kind == "readers":
             registry.step(name)
         elif registry.is_imported(kind):
-            registry.load(kind, name)
+            yield from _wrong_holding(registry.load(kind, name))
     except PipelineError as error:
         yield from (str(p).partition("\n")[0] for p in error.problems)
     except TactileGraphError as error:
         yield " ".join(text_of(error).split())
+
+
+def _wrong_holding(offer: Any) -> Iterator[str]:
+    """Yield why an exporter could not be told what it is to be given."""
+    allowed = get_args(Holds)
+    if isinstance(offer, Exporter) and offer.holds not in allowed:
+        hint = did_you_mean(offer.holds, allowed)
+        yield f"it holds {shown(offer.holds)}, must be one of {one_of(allowed)}{hint}"
 
 
 def _read(registry: Registry, kind: str, name: str) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Sized
 from typing import Any, get_args
+
+import numpy as np
 
 from tactile_graph.engine.blocks.stacked import StackedForm
 from tactile_graph.errors import text_of
@@ -40,12 +42,20 @@ def stack_trouble(form: StackedForm, rows: Sequence[Inputs], step: Callable[...,
         return ""
     values, done = found if isinstance(found, Answered) else (found, [True] * len(rows))
     if not isinstance(values, Stack) or len(values) != len(rows) or len(done) != len(rows):
-        return f"its stacked form gives no stack of as many values as it took: {values!r:.80}"
+        return f"its stacked form gives no stack of as many values as it took: {_counted(found)}"
     for i, row in enumerate(rows):
         trouble = _difference(values, i, row, step) if done[i] else ""
         if trouble:
             return trouble
     return ""
+
+
+def _counted(found: Any) -> str:
+    """Return what a stacked form gave, by types and numbers: texts that differ by no address."""
+    if isinstance(found, Answered):
+        return f"{_counted(found.values)}, {np.size(found.done)} of them told as done or not"
+    n = f" of {len(found)}" if isinstance(found, Sized) else ""
+    return f"{type(found).__name__}{n}"
 
 
 def _stack(form: StackedForm, port: str, values: Sequence[Any]) -> Stack | None:

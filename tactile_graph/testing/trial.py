@@ -25,6 +25,8 @@ TIMES = 30.0
 """How many times the time of an ordinary frame any other of its size may take."""
 IDLE = 10.0
 """How many times its seconds of the processor a step may take by the clock: the rest is others'."""
+WAITS_S = 20.0
+"""How long a step may wait by the clock while it takes less than its share of the processor."""
 LONGEST_LINE = 400
 
 
@@ -44,8 +46,8 @@ class Trial:
         What the step raised, with its place.
     where : str
         File and line it was raised at.
-    seconds : float
-        Of the processor.
+    seconds, clock_s : float
+        Of the processor, and by the clock.
     late : bool
         Whether it was stopped because it took too long.
     """
@@ -55,6 +57,7 @@ class Trial:
     where: str = ""
     seconds: float = 0.0
     late: bool = False
+    clock_s: float = 0.0
 
     @property
     def answered(self) -> bool:
@@ -64,7 +67,10 @@ class Trial:
     def trouble(self) -> str:
         """Return what is wrong with how the call ended, in words; "" where nothing is."""
         if self.late:
-            return f"was stopped after {self.seconds:.1f} s of the processor"
+            waited = (
+                f", {self.clock_s:.0f} s by the clock" if self.clock_s > 2 * self.seconds else ""
+            )
+            return f"was stopped after {self.seconds:.1f} s of the processor{waited}"
         if self.error is None:
             return ""
         text = text_of(self.error)
@@ -95,18 +101,20 @@ def attempt(
     call : callable
     arguments : dict
     limit_s : float
-        After so many seconds of the processor, or `IDLE` times as many by the clock, it is stopped,
-        on the main thread of systems with alarms; elsewhere it is only told.
+        After so many seconds of the processor, `IDLE` times as many by the clock, or `WAITS_S` in
+        which it only waits, it is stopped, on the main thread of systems with alarms; elsewhere it
+        is only told.
     package : str
         Whose lines errors are told by, rather than those of what it calls.
     """
-    start = time.process_time()
+    start, start_s = time.process_time(), time.perf_counter()
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"), _limited(limit_s):
             warnings.simplefilter("ignore")
             value = freeze(call(**arguments))
     except _TooLong:
-        return Trial(seconds=time.process_time() - start, late=True)
+        spent, clock_s = time.process_time() - start, time.perf_counter() - start_s
+        return Trial(seconds=spent, late=True, clock_s=clock_s)
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # SystemExit and whatever else a step may raise
@@ -138,13 +146,14 @@ def _limited(seconds: float) -> Iterator[None]:
     start, start_s = time.process_time(), time.perf_counter()
 
     def stop(number: int, frame: FrameType | None) -> None:
-        left_s = seconds - (time.process_time() - start)
-        if left_s <= 0.0 or time.perf_counter() - start_s > IDLE * seconds:
+        spent, clock_s = time.process_time() - start, time.perf_counter() - start_s
+        waits = clock_s >= WAITS_S and spent < clock_s / IDLE
+        if spent >= seconds or clock_s > IDLE * seconds or waits:
             raise _TooLong
-        signal.setitimer(signal.ITIMER_REAL, left_s)
+        signal.setitimer(signal.ITIMER_REAL, min(seconds - spent, WAITS_S))
 
     before = signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    signal.setitimer(signal.ITIMER_REAL, min(seconds, WAITS_S))
     try:
         yield
     finally:

@@ -194,6 +194,42 @@ def test_a_format_that_fails_to_recognise_is_told_by_plugin(
         next(iter(recording(path=path, report=Report())))
 
 
+def test_a_format_that_fails_to_recognise_leaves_the_others_to_be_asked(
+    plugin: Plugin,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    plugin("Recordings, read and written")
+    bad = mypad().FORMAT._replace(recognises=lambda head: 1 / 0)
+    monkeypatch.setattr(mypad(), "FORMAT", bad)
+    path = tmp_path / "table.csv"
+    path.write_text("1,2\n3,4\n")
+    for _ in range(2):
+        (frame,) = recording(path=path, rows=2, columns=2, report=Report())
+        assert frame.image.values.tolist() == [[1, 2], [3, 4]]
+    (line,) = capsys.readouterr().err.splitlines()  # once, however often it is asked
+    assert line.startswith("recording format \"mypad's .mypad\" of plugin 'mypad' ")
+    assert line.endswith(
+        "is one: ZeroDivisionError: division by zero; the other formats were asked"
+    )
+
+
+def test_a_format_that_cannot_be_imported_leaves_the_others_to_be_asked(
+    plugin: Plugin,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    plugin("Recordings, read and written")
+    monkeypatch.delattr(mypad(), "FORMAT")
+    path = tmp_path / "table.csv"
+    path.write_text("1,2\n3,4\n")
+    (frame,) = recording(path=path, rows=2, columns=2, report=Report())
+    assert frame.image.shape == (2, 2)
+    assert "mypad has no 'FORMAT'; the other formats are asked" in capsys.readouterr().err
+
+
 SILENT = """
 pipeline: silent
 source: {step: sample, with: {name: discs}}

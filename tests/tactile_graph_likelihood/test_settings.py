@@ -13,8 +13,8 @@ STEPS = {
     "follow_footprint": ("partly", 0.15, None),
     "choose_shape": ("partly", 0.2, None),
     "identify_footprint": ("partly", 0.2, None),
-    "fit_footprints": ("whole", None, 1.0),
-    "locate_objects": ("mostly", None, 1.0),
+    "fit_footprints": ("whole", None, None),
+    "locate_objects": ("mostly", None, None),
 }
 
 

@@ -404,7 +404,7 @@ class _Run:
             return
         try:
             self.lines.close()
-            self.written = not self.lines.broken
+            self.written = not getattr(self.lines, "broken", False)
         except BrokenPipeError:
             raise
         except Exception as error:

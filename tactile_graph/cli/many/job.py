@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from tactile_graph.api.pipeline import Pipeline
-from tactile_graph.cli.output.outputs import Output
+from tactile_graph.cli.output.outputs import Output, form_of
 from tactile_graph.cli.output.tally import LOOKED_THROUGH, Tally
 from tactile_graph.compiled import warm_up
 from tactile_graph.engine.blocks.block import Block
@@ -158,8 +158,9 @@ class _Bench:
         job = self.job
         part: list[bytes] = []
         with tempfile.TemporaryDirectory(prefix="tactile-graph-") as folder:
-            path = Path(folder, f"part{job.ending}")
-            output = Output.of(str(path), job.ending[1:], job.full, job.long)
+            form = form_of(job.ending)
+            path = Path(folder, f"part.{form}")
+            output = Output.of(str(path), form, job.full, job.long)
             assert output is not None
             writer, _ = output.writer(job.pipeline, job.asked)
             try:

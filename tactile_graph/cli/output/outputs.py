@@ -32,7 +32,7 @@ class Output:
     exporter : Exporter
     full, long : bool
     ending : str
-        That files of the exporter have.
+        That files of the exporter have; of one whose ending is another's its qualified name.
     """
 
     name: str
@@ -81,7 +81,12 @@ class Output:
 
 def forms() -> list[str]:
     """Return what ``--format`` takes: the endings of files, without their dots."""
-    return [ending.removeprefix(".") for ending in _endings()]
+    return [form_of(ending) for ending in _endings()]
+
+
+def form_of(ending: str) -> str:
+    """Return what ``--format`` takes for an exporter by its name: ``csv``, ``mine.csv``."""
+    return ending.removeprefix(".")
 
 
 def _endings() -> list[str]:
@@ -101,20 +106,28 @@ def _no_place(option: str, what: str, holds: str = "numbers") -> str:
 
 def _ending(name: str, form: str | None) -> str:
     """Return the ending that files of the form have, by what is told or by the file's name."""
-    known = _endings()
     if form is not None:
-        if f".{form}" not in known:
+        ending = next((e for e in (f".{form}", form) if installed().has(OFFERS, e)), None)
+        if ending is None:
             near = did_you_mean(form, forms())
-            raise UsageError(f"--format {form}: is none of {', '.join(forms())}{near}")
-        return f".{form}"
+            missing = installed().missing_plugins()
+            raise UsageError(f"--format {form}: is none of {', '.join(forms())}{near}{missing}")
+        return ending
     if name.endswith(("/", os.sep)):
         return FOLDER
-    suffix = Path(name).suffix.lower()
-    if name == "-" or suffix in known:
-        return USUAL if name == "-" else suffix
+    if name == "-":
+        return USUAL
+    path = Path(name)
+    known = [e for e in _endings() if e.startswith(".")]
+    fitting = [e for e in known if path.name.lower().endswith(e) and len(path.name) > len(e)]
+    if fitting:
+        return max(fitting, key=len)
     if Path(name).is_dir():
         raise UsageError(
             f"-o {name}: is a folder; name a file in it, or end it in / for a data set of Parquet"
         )
-    near = did_you_mean(suffix, known) if suffix else ""
-    raise UsageError(f"-o {name}: its name must end in {', '.join(known)}, or give --format{near}")
+    near = did_you_mean(path.suffix.lower(), known) if path.suffix else ""
+    missing = installed().missing_plugins()
+    raise UsageError(
+        f"-o {name}: its name must end in {', '.join(known)}, or give --format{near}{missing}"
+    )

@@ -16,7 +16,7 @@ from rich.text import Text
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.live_table import shown
 from tactile_graph.engine.blocks.block import Block
-from tactile_graph.engine.outcomes.notices import notices
+from tactile_graph.engine.outcomes.notices import assumed_by, notices
 from tactile_graph.engine.outcomes.outcome import Failed, Skipped, item_words
 from tactile_graph.engine.tables.block_columns import Part, known_finite, parts_of
 from tactile_graph.engine.tables.columns import OutputColumns, values_of
@@ -239,7 +239,7 @@ class Tally:
         seen: set[int] = set()  # a value may be handed on as it is
         for item in result.plan.nodes:
             value = result.outcome(item.name)
-            told = getattr(value, "assumed", "")
+            told = assumed_by(value)
             if told and id(value) not in seen and item.name not in self.assumed:
                 self.assumed[item.name] = (told, result.frame.index)
             seen.add(id(value))

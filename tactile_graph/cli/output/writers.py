@@ -13,6 +13,7 @@ from tactile_graph.api.result import Result
 from tactile_graph.cli.output.column_texts import csv_lines, number_texts
 from tactile_graph.cli.output.one_run import opened_alone
 from tactile_graph.engine.blocks.block import Block
+from tactile_graph.engine.outcomes.notices import untold
 from tactile_graph.engine.outcomes.outcome import NO_VALUE
 from tactile_graph.engine.tables.block_columns import parts_of, plain_fields
 from tactile_graph.engine.tables.rows import as_data, without_nan
@@ -98,7 +99,7 @@ def json_row(result: Result, full: bool) -> dict[str, Any]:
     if decisions := result.decisions:
         row["deadline"] = list(decisions)
     outcomes = {name: result.outcome(name) for name in result.plan.asked}
-    row["outputs"] = {name: as_data(outcome, full) for name, outcome in outcomes.items()}
+    row["outputs"] = {name: _told(name, outcome, full) for name, outcome in outcomes.items()}
     if frame.truth is None:
         return row
     errors = {}
@@ -109,6 +110,14 @@ def json_row(result: Result, full: bool) -> dict[str, Any]:
     row["errors"] = errors
     row["truth"] = [{"kind": type(t.shape).__name__, **as_data(t, full)} for t in frame.truth]
     return row
+
+
+def _told(name: str, outcome: Any, full: bool) -> Any:
+    """Return an output's outcome as plain data."""
+    try:
+        return as_data(outcome, full)
+    except Exception as error:  # a plugin's own code may raise anything
+        raise untold(name, "line of JSON", error) from error
 
 
 def _json_heads(numbers: list[int], times_s: list[float | None]) -> list[str]:

@@ -164,11 +164,11 @@ def stacked_call(
         for i, frame in enumerate(group):
             show(frame)
             try:
-                value = call(**{name: at(v, i) for name, v in values.items()})
+                value = freeze(call(**{name: at(v, i) for name, v in values.items()}))
             except Exception:  # told when the frame goes on alone
                 continue
             if value is not None and value.__class__ not in NO_VALUE:
-                outcomes[i], done[i] = freeze(value), True
+                outcomes[i], done[i] = value, True
         if not done.all():
             _part(Listed(outcomes), done, slot, start)
         return Listed(outcomes)
@@ -215,13 +215,14 @@ def stacked_field(path: tuple[str, ...], get: Call) -> Call:
             return get(value)
         try:
             found = field_of(value, path) if path else Listed([*map(get, value)])
+            if isinstance(found, Listed):
+                found = Listed([freeze(v) for v in found])
         except Exception:  # told when the frame goes on alone
             raise all_alone(len(value)) from None
         if isinstance(found, Listed):
             there = np.array([v is not None for v in found], np.bool_)
             if not there.all():
                 _part_at(there)
-            return Listed([freeze(v) for v in found])
         return found
 
     return field

@@ -142,7 +142,7 @@ class Host:
     def __init__(self, name: str = "") -> None:
         self._name = name
         self._orders: list[Order] = []
-        self._process = _Process()
+        self._process = Process()
         self._n_made = self._n_restarts = 0
         self._ended_by = self._broken = ""
 
@@ -218,16 +218,22 @@ class Host:
         self._n_made = 0
         self._n_restarts += 1
         self._process.kill()
-        self._process = _Process()
+        self._process = Process()
         for order in self._orders:
             self._process.send(order.pickled)
 
 
-class _Process:
-    """A process, and what it has said."""
+class Process:
+    """A process of a module that takes messages and gives some, and what it has said.
 
-    def __init__(self) -> None:
-        command = [sys.executable, "-m", "tactile_graph.engine.calls.isolated_worker"]
+    Parameters
+    ----------
+    module : str
+        What runs in it; the first message it takes is ``sys.path``.
+    """
+
+    def __init__(self, module: str = "tactile_graph.engine.calls.isolated_worker") -> None:
+        command = [sys.executable, "-m", module]
         with out_of_reach():
             self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         assert self._process.stdin is not None

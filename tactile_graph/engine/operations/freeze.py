@@ -5,6 +5,7 @@ No array is copied.
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 from typing import Any, get_type_hints
 
@@ -25,7 +26,25 @@ FROZEN: set[type] = {*IMMUTABLE, Image}
 
 
 def freeze(value: Any) -> Any:
-    """Return the value, arrays in it read-only, lists as tuples, dicts and sets copied."""
+    """Return the value, arrays in it read-only, lists as tuples, dicts and sets copied.
+
+    A record is itself where all its fields are, else a copy: its step may go on with its own.
+
+    Raises
+    ------
+    TypeError
+        If the value holds itself, or is nested deeper than Python follows.
+    """
+    try:
+        return _frozen(value)
+    except RecursionError:
+        raise TypeError(
+            "what the step returned holds itself, or is nested hundreds deep; "
+            "let records name each other by a number or a text"
+        ) from None
+
+
+def _frozen(value: Any) -> Any:
     kind = value.__class__
     if kind in FROZEN or value is None:
         return value
@@ -35,14 +54,28 @@ def freeze(value: Any) -> Any:
         if _only_numbers(kind):
             FROZEN.add(kind)
             return value
+    changed = None
     for name in names:
         field: Any = getattr(value, name, None)
         kind = field.__class__
         if kind is np.ndarray:
             field.setflags(False)  # by keyword it takes twice as long
         elif kind not in FROZEN:
-            freeze(field)
+            own = _frozen(field)
+            if own is not field:
+                changed = changed or {}
+                changed[name] = own
+    if changed:
+        return _with(value, changed)
     return value if names else _freeze_container(value)
+
+
+def _with(record: Any, changed: dict[str, Any]) -> Any:
+    """Return a copy of a record, frozen or not, with other values in some of its fields."""
+    made = copy.copy(record)
+    for name, value in changed.items():
+        object.__setattr__(made, name, value)
+    return made
 
 
 _FIELDS: dict[type, tuple[str, ...]] = {}
@@ -70,16 +103,16 @@ def _freeze_container(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         value.setflags(False)  # type: ignore[call-arg]
     elif isinstance(value, tuple):
-        items = [freeze(v) for v in value]
+        items = [_frozen(v) for v in value]
         if any(a is not b for a, b in zip(items, value, strict=True)):
             return type(value)(*items) if hasattr(value, "_fields") else tuple(items)
     elif isinstance(value, list):
-        return tuple(freeze(v) for v in value)
+        return tuple(_frozen(v) for v in value)
     elif value.__class__ is dict:  # a step may give the one it keeps, and go on filling it
-        return {key: freeze(item) for key, item in value.items()}
+        return {key: _frozen(item) for key, item in value.items()}
     elif value.__class__ is set:
         return value.copy()
     elif isinstance(value, dict):
         for item in value.values():
-            freeze(item)
+            _frozen(item)
     return value

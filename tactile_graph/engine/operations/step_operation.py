@@ -78,7 +78,7 @@ def _call_of_one(item: Item, node: Node, call: Call, time: int) -> Operation:
             return
         state[time] = clock() - start
         if result.__class__ not in FROZEN:
-            result = freeze(result) if result is not None else nothing_returned(name, what)
+            result = settled(result, name, what)
         state[slot] = result
 
     return operation
@@ -113,7 +113,7 @@ def _call_of_two(item: Item, node: Node, call: Call, time: int) -> Operation:
             return
         state[time] = clock() - start
         if result.__class__ not in FROZEN:
-            result = freeze(result) if result is not None else nothing_returned(name, what)
+            result = settled(result, name, what)
         state[slot] = result
 
     return operation
@@ -154,12 +154,23 @@ def _call_of_any(item: Item, node: Node, call: Call, time: int, blocks: list[Blo
             return
         state[time] = clock() - start
         if result.__class__ not in FROZEN and result.__class__ not in NO_VALUE:
-            result = freeze(result) if result is not None else None
-            if result is None:
-                result = DONE if sink else nothing_returned(name, what)
+            result = DONE if result is None and sink else settled(result, name, what)
         state[slot] = result
 
     return operation
+
+
+def settled(value: Any, name: str, what: str) -> Any:
+    """Return what a step returned as its node's outcome."""
+    return nothing_returned(name, what) if value is None else frozen(value, name, what)
+
+
+def frozen(value: Any, name: str, what: str = "") -> Any:
+    """Return a value frozen; a failure of the node where that cannot be."""
+    try:
+        return freeze(value)
+    except Exception as error:  # no line of a plugin's is to blame: what it returned is
+        return Failed(name, error.with_traceback(None), step=what)
 
 
 def _collected(state: State, port: Input, name: str) -> Any:

@@ -145,7 +145,7 @@ class Outcomes(Mapping[str, Any]):
         if slot is None:
             if name in self.plan.pipeline.nodes:
                 return NOT_ASKED
-            known = [*self.plan.asked, *self.plan.pipeline.nodes]
+            known = dict.fromkeys((*self.plan.asked, *self.plan.pipeline.nodes))
             hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"
             raise UsageError(f"no node or output named {name!r}{hint}")
         outcome = self._state[slot]

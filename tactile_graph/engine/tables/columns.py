@@ -9,6 +9,7 @@ from typing import Any, Literal, get_origin
 
 import numpy as np
 
+from tactile_graph.engine.outcomes.notices import untold
 from tactile_graph.engine.outcomes.outcome import NO_VALUE
 from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.engine.tables.image_quantities import UNKNOWN, ByFrame, Told, told_of
@@ -121,7 +122,10 @@ def values_of(result: Outcomes, columns: OutputColumns) -> dict[str, Any]:
     outcome = result.outcome(columns.output)
     if outcome.__class__ in NO_VALUE:
         return {}
-    values = scalars(columns.output, outcome)
+    try:
+        values = scalars(columns.output, outcome)
+    except Exception as error:  # a plugin's own code may raise anything
+        raise untold(columns.output, "row of numbers", error) from error
     true = nearest(outcome, result.frame.truth) if columns.errors else None
     if true is not None:
         errors = errors_against(outcome, true)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, NamedTuple
+from collections.abc import Iterator
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import pytest
@@ -148,3 +149,29 @@ def test_what_is_no_record_is_refused():
 
     with pytest.raises(PluginError, match=r"Wrong\.drawing\(\) must give records to draw, got"):
         display_list(Wrong())
+
+
+class Smudged:
+    def drawing(self) -> Iterator[Outline]:
+        raise LookupError("no ink")
+        yield
+
+
+class Frayed:
+    def outline_cm(self) -> None:
+        raise LookupError("no edge")
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        (Smudged(), r"Smudged\.drawing\(\) breaks: LookupError: no ink \(.*display.py:\d+"),
+        (
+            Frayed(),
+            r"Frayed\.outline_cm\(\) breaks: LookupError: no edge \(.*display.py:\d+",
+        ),
+    ],
+)
+def test_a_record_that_cannot_draw_itself_is_told_by_its_type(value: Any, told: str) -> None:
+    with pytest.raises(PluginError, match=told):
+        display_list(value)

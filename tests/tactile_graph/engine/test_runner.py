@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
 from helpers_graphs import STEPS, cases, frame, registry, shown
 from tactile_graph import Pipeline, loads
+from tactile_graph.errors import UsageError
 
 FLOW = """
 pipeline: sums
@@ -29,6 +31,11 @@ def pipeline(text: str = FLOW) -> Pipeline:
 def sums(runner: Any, index: int) -> tuple[int, int]:
     result = runner(frame(10, index))
     return result["sum"], result["sum_of_more"]
+
+
+def test_a_bare_array_is_told_to_be_no_frame() -> None:
+    with pytest.raises(UsageError, match=r"takes frames, got ndarray; Frame\.of"):
+        pipeline().runner()(np.ones((2, 2)))  # type: ignore[arg-type]
 
 
 def test_a_node_that_computes_the_same_goes_on_and_one_that_reads_another_begins_anew() -> None:

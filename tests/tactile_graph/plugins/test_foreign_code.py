@@ -52,6 +52,30 @@ def test_what_a_plugin_prints_goes_to_stderr(capsys: pytest.CaptureFixture[str])
     assert capsys.readouterr() == ("", "hello from a plugin\n")
 
 
+def test_what_a_plugin_writes_to_the_descriptor_goes_to_stderr(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    def load() -> ModuleType:
+        os.write(1, b"SDK 2.1 loaded\n")
+        return ModuleType("bad")
+
+    print("before", end="")  # noqa: T201
+    registry(load)
+    print(", after")  # noqa: T201
+    assert capfd.readouterr() == ("before, after\n", "SDK 2.1 loaded\n")
+
+
+def test_a_plugin_is_imported_where_stdout_is_closed(capfd: pytest.CaptureFixture[str]) -> None:
+    kept = os.dup(1)
+    os.close(1)
+    try:
+        plugins = registry(lambda: ModuleType("bad")).plugins
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+    assert [p.error for p in plugins] == ["", ""]
+
+
 def test_ctrl_c_during_an_import_is_no_fault_of_the_plugin() -> None:
     def load() -> ModuleType:
         os.kill(os.getpid(), signal.SIGINT)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypedDict
 
 import pytest
 from annotated_types import Ge, Len, Lt, MinLen, MultipleOf
 from pydantic import Field, StringConstraints
+from typing_extensions import TypedDict as ExtendedTypedDict
 
 from tactile_graph import Circle, Frame, Image, Mask
 from tactile_graph.errors import PluginError
@@ -164,3 +166,27 @@ def test_what_holds_together_is_let_through(target: Callable[..., Any]) -> None:
 def test_every_installed_step_holds_together() -> None:
     found = installed()
     assert [found.step(name).name for name in found.names("steps")] == found.names("steps")
+
+
+class Bare(TypedDict, total=False):
+    level: float
+
+
+class Fit(ExtendedTypedDict, total=False):
+    level: float
+
+
+def with_bare(image: Image, *, named: dict[str, list[Bare]] = {}) -> Image:  # noqa: B006
+    return image
+
+
+def with_fit(image: Image, *, level: Fit = {}) -> Image:  # noqa: B006
+    return image
+
+
+@pytest.mark.skipif(sys.version_info >= (3, 12), reason="Python 3.12 has what is needed of it")
+def test_a_typed_dict_that_cannot_be_checked_is_told_to_the_author() -> None:
+    told = r"^step 'x': setting 'named': Bare is a typing.TypedDict, .* TypedDict of typing_ext"
+    with pytest.raises(PluginError, match=told):
+        check_signature(read_signature("x", with_bare))
+    check_signature(read_signature("x", with_fit))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import threading
+import time
 from collections.abc import Callable
 from typing import Annotated, Any, NamedTuple
 
@@ -16,7 +17,9 @@ from tactile_graph.errors import UsageError
 from tactile_graph.steps import Grid, Quantity
 from tactile_graph.testing import BrokenPromises, Case, all_cases, check_step, examine_step
 from tactile_graph.testing import examination as trials
+from tactile_graph.testing import trial as calls
 from tactile_graph.vocabulary import QUANTITIES
+from tactile_graph.wires.stacks import Column, MaskStack
 
 
 def all_finite(image: Image) -> None:
@@ -191,6 +194,47 @@ class HandsOutItsState:
         return Mask(self._sum, mask.pitch_cm)
 
 
+def says_badly(mask: Mask) -> int:
+    return mask.count
+
+
+def broken_notice(mask: Mask) -> str:
+    raise ValueError(f"{mask.count} cells")
+
+
+says_badly.notice = broken_notice  # type: ignore[attr-defined]
+
+
+def says_of_no_port(mask: Mask) -> int:
+    return mask.count
+
+
+says_of_no_port.notice = lambda msk, value: ""  # type: ignore[attr-defined]
+
+
+class Assuming(NamedTuple):
+    x_cm: float
+
+    @property
+    def assumed(self) -> str:
+        raise KeyError("nobody")
+
+
+def assumes_badly(mask: Mask) -> Assuming:
+    return Assuming(1.0)
+
+
+class Summed(NamedTuple):
+    x_cm: float
+
+    def summary(self) -> dict[str, float]:
+        return [self.x_cm]  # type: ignore[return-value]
+
+
+def sums_badly(mask: Mask) -> Summed:
+    return Summed(1.0)
+
+
 BROKEN: list[tuple[Callable[..., Any], str]] = [
     (writes_through, "writes into its input mask; change a copy"),
     (writes, "raises ValueError: output array is read-only"),
@@ -211,6 +255,10 @@ BROKEN: list[tuple[Callable[..., Any], str]] = [
     (ends_the_program, "raises SystemExit: nothing pressed"),
     (never_ends, "values of 1e-100 (and 1 more case): was stopped after"),
     (BreaksWarmedUp, "an ordinary frame (and 16 more cases): gives as good what is none"),
+    (says_badly, "its notice cannot be had: ValueError: "),
+    (says_of_no_port, "its notice asks for 'msk', which is none of its ports; did you mean 'mask'"),
+    (assumes_badly, "its assumed cannot be had: KeyError: 'nobody'"),
+    (sums_badly, "its summary cannot be had: PluginError: Summed.summary() must return a mapping"),
     (HandsOutItsState, "writes into what it gave before; give a copy"),
 ]
 
@@ -231,6 +279,67 @@ def test_what_is_broken_is_told_in_a_line(
     assert [line for line in lines if told in line], lines
     assert all(line.startswith(f"step {step.__name__!r}: ") for line in lines)
     assert len(lines) == 1 or step in SEVERAL
+
+
+def waits(image: Image) -> float:
+    time.sleep(60.0)
+    return 1.0
+
+
+@pytest.mark.slow
+def test_a_step_that_waits_for_ever_is_told_after_one_case(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(calls, "WAITS_S", 0.3)
+    report = examine_step(waits)
+    (line,) = report.lines()
+    assert line.startswith("step 'waits': an ordinary frame: was stopped after 0.")
+    assert report.n_cases == 1
+
+
+def sleepy(image: Image) -> float:
+    all_finite(image)
+    if image.shape != (8, 9):
+        time.sleep(60.0)
+    return 1.0
+
+
+def test_no_more_cases_are_tried_once_several_took_too_long(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(calls, "WAITS_S", 0.03)
+    report = examine_step(sleepy)
+    assert report.n_cases < 10
+    (line,) = report.lines()
+    assert "(and 2 more cases): was stopped after " in line
+
+
+class Spot:
+    def __init__(self, x_cm: float) -> None:
+        self.x_cm = x_cm
+
+
+def spot(mask: Mask) -> Spot:
+    """Return a record that does not say when another equals it."""
+    return Spot(float(mask.count))
+
+
+def test_a_record_without_an_equality_is_held_against_another_by_its_content() -> None:
+    assert check_step(spot).n_values > 15
+
+
+def short(mask: Mask) -> float:
+    return float(mask.count)
+
+
+def two_values(mask: MaskStack) -> Column:
+    return Column(np.zeros(3))
+
+
+short.stacked = two_values  # type: ignore[attr-defined]
+
+
+def test_the_same_fault_of_a_stacked_form_is_one_line() -> None:
+    (line,) = examine_step(short).lines()
+    assert line.endswith("gives no stack of as many values as it took: Column of 3")
 
 
 def test_a_signature_that_does_not_hold_together_is_told() -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 import threading
+import time
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +14,7 @@ import pytest
 from tactile_graph import Circle, Image, Mask, Points
 from tactile_graph.draw.display import Outline
 from tactile_graph.errors import Degenerate
+from tactile_graph.testing import trial as trials
 from tactile_graph.testing.finite import not_finite
 from tactile_graph.testing.same import same
 from tactile_graph.testing.shown import unshown
@@ -99,6 +102,38 @@ def test_the_same_is_of_one_type_and_content() -> None:
     assert not same({"a": 1}, {"b": 1})
 
 
+class Bare:
+    """A record that does not say when another equals it."""
+
+    def __init__(self, x_cm: float, **more: Any) -> None:
+        self.x_cm, self.more = x_cm, more
+        self.whole = self
+
+
+class BareSlots:
+    __slots__ = ("_x_cm",)
+
+    def __init__(self, x_cm: float) -> None:
+        self._x_cm = x_cm
+
+
+@pytest.mark.parametrize("kind", [Bare, BareSlots])
+def test_records_that_say_nothing_of_equality_are_compared_by_content(kind: Any) -> None:
+    assert same(kind(1.0), kind(1.0))
+    assert same([kind(math.nan)], [kind(math.nan)])
+    assert not same(kind(1.0), kind(2.0))
+
+
+def test_a_record_with_more_in_it_is_another() -> None:
+    assert not same(Bare(1.0, y_cm=np.arange(2)), Bare(1.0, y_cm=np.arange(3)))
+    assert same(Bare(1.0, y_cm=np.arange(2)), Bare(1.0, y_cm=np.arange(2)))
+    one, other = Bare(1.0), Bare(1.0)
+    other.extra = 1.0  # type: ignore[attr-defined]
+    assert not same(one, other)
+    assert not same(other, one)
+    assert not same(lambda: 1, lambda: 2)
+
+
 def test_a_call_that_takes_too_long_is_stopped() -> None:
     def endless() -> None:
         while True:
@@ -110,6 +145,15 @@ def test_a_call_that_takes_too_long_is_stopped() -> None:
     trial = attempt(endless, {}, 0.05)
     assert trial.late
     assert "was stopped after" in trial.trouble()
+
+
+def test_a_call_that_only_waits_is_stopped_by_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(trials, "WAITS_S", 0.1)
+    found = attempt(lambda: time.sleep(60.0), {}, 60.0)
+    assert found.late
+    assert re.fullmatch(
+        r"was stopped after 0.0 s of the processor, \d+ s by the clock", found.trouble()
+    )
 
 
 def test_beside_the_main_thread_a_call_is_only_told_to_be_late() -> None:

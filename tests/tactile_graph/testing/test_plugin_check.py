@@ -11,6 +11,7 @@ import pytest
 from tactile_graph import Mask, hookimpl
 from tactile_graph.cli.plugin_check import show_checked
 from tactile_graph.errors import UsageError
+from tactile_graph.exporter import Exporter
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.testing.plugin_check import examine_plugin
 
@@ -83,6 +84,16 @@ def test_each_fault_is_a_line(tmp_path: Path) -> None:
     assert any("no step named 'nope'" in line for line in pipeline)
     assert "os has no 'gone'" in command
     assert all("\n" not in line for line in report.broken)
+
+
+MISTAKEN = Exporter("mine", "numbres", lambda export: None)  # type: ignore[arg-type,return-value]
+
+
+def test_an_exporter_that_holds_nothing_known_is_told() -> None:
+    registry = registry_of(offering(exporters={".mine": f"{__name__}:MISTAKEN"}))
+    (line,) = examine_plugin(registry.plugins[0], registry).broken
+    told = "it holds 'numbres', must be one of images, numbers, records; did you mean 'numbers'?"
+    assert line == f"exporter '.mine': {told}"
 
 
 def test_a_plugin_that_does_not_load_says_why() -> None:

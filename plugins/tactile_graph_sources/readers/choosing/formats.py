@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from functools import cache
 from pathlib import Path
 
 from tactile_graph.errors import DataError, PluginError, text_of
+from tactile_graph.foreign_text import tell
 from tactile_graph_sources.readers.choosing.others import remedy_for, remedy_without_header
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.recording_format import RecordingFormat
@@ -32,8 +34,10 @@ def format_of(head: Head) -> RecordingFormat:
     ------
     DataError
         If the file is of no known format.
+    PluginError
+        If it is of none, and one of a plugin broke when it was asked.
     """
-    found = next((f for f in formats() if _recognised(f, head)), None)
+    found = _first(formats(), head)
     if found is None:
         told = f"{remedy_without_header(head)}formats that are read: {known()}"
         raise DataError(str(head.path), f"no recording: {head.found()}; {remedy_for(head) or told}")
@@ -41,9 +45,26 @@ def format_of(head: Head) -> RecordingFormat:
 
 
 def format_of_folder(path: Path, told: Told) -> RecordingFormat | None:
-    """Return the format of a folder; None if it is of none."""
-    head = Head(path, b"", told)
-    return next((f for f in formats(of_folders=True) if _recognised(f, head)), None)
+    """Return the format of a folder; None if it is of none. Raises as `format_of`."""
+    return _first(formats(of_folders=True), Head(path, b"", told))
+
+
+def _first(asked: Sequence[RecordingFormat], head: Head) -> RecordingFormat | None:
+    """Return the first format that recognises a recording, and tell of those that broke."""
+    broken = []
+    for one in asked:
+        try:
+            if not _recognised(one, head):
+                continue
+        except PluginError as error:
+            broken.append(error)
+            continue
+        for trouble in broken:
+            _tell_once(f"{trouble}; the other formats were asked")
+        return one
+    if broken:
+        raise broken[0]
+    return None
 
 
 def _recognised(found: RecordingFormat, head: Head) -> bool:
@@ -60,10 +81,20 @@ def _recognised(found: RecordingFormat, head: Head) -> bool:
         ) from error
 
 
+@cache
+def _tell_once(text: str) -> None:
+    tell(text)
+
+
 def _offered() -> Iterator[tuple[str, RecordingFormat]]:
-    """Yield every format and the plugin that offers it."""
+    """Yield every format that loads, and the plugin that offers it."""
     from tactile_graph.plugins.registry import installed
 
     registry = installed()
     for name in registry.offered(OFFERS):
-        yield registry.offer(OFFERS, name).plugin.label, registry.load(OFFERS, name)
+        try:
+            loaded = registry.load(OFFERS, name)
+        except PluginError as error:
+            _tell_once(f"{error}; the other formats are asked")
+            continue
+        yield registry.offer(OFFERS, name).plugin.label, loaded

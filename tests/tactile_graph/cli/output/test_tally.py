@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -161,3 +162,90 @@ def test_explain_says_it_of_its_frame(hand_made: Path, monkeypatch: pytest.Monke
     assert "notice" not in call("explain", "p.yaml", "r.txt").stdout
     got = call("explain", "p.yaml", "r.txt", "--frame", 1).stdout
     assert got.splitlines()[-1] == "notice  c: a peak of 3 is much"
+
+
+@dataclass
+class Unsure:
+    x_cm: float
+
+    @property
+    def assumed(self) -> str:
+        raise LookupError("what was it")
+
+
+def unsure(image: Image) -> Unsure:
+    return Unsure(image.peak)
+
+
+def hoarse(image: Image) -> float:
+    return image.peak
+
+
+def lost_voice(image: Image) -> str:
+    raise ValueError("no voice")
+
+
+hoarse.notice = lost_voice  # type: ignore[attr-defined]
+
+
+def test_a_notice_that_breaks_is_told_by_its_node_and_the_run_goes_on(
+    hand_made: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install(monkeypatch, hand_made, steps={"hoarse": hoarse, "unsure": unsure})
+    (hand_made / "r.txt").write_text("1\n2\n3\n")
+    nodes = "nodes: {h: {step: hoarse, in: frame}, u: {step: unsure, in: frame}}"
+    (hand_made / "p.yaml").write_text(f"{{pipeline: p, {nodes}, outputs: [h, u]}}")
+    got = call("run", "p.yaml", "r.txt", "-o", "out.jsonl")
+    assert got.exit_code == 0
+    assert len((hand_made / "out.jsonl").read_text().splitlines()) == 3
+    lines = [x for x in got.stderr.splitlines() if x.startswith(("notice", "assumed"))]
+    assumed, notice = lines
+    assert assumed.startswith("assumed  u: its assumed breaks: LookupError: what was it (")
+    assert assumed.endswith("in assumed) (in frame 0)")
+    assert notice.startswith("notice   h: its notice breaks: ValueError: no voice (")
+    assert "in lost_voice) (in 3 of 3 frames looked at, first in frame 0)" in notice
+    explained = call("explain", "p.yaml", "r.txt")
+    assert explained.exit_code == 0
+    assert "notice  h: its notice breaks: ValueError: no voice" in explained.stdout
+
+
+@dataclass
+class Columnless:
+    x_cm: float
+    columns_shown = ("gone_cm",)
+
+
+@dataclass
+class Summing:
+    x_cm: float
+
+    def summary(self) -> dict[str, float]:
+        raise LookupError("no sum")
+
+
+def columnless(image: Image) -> Columnless:
+    return Columnless(image.peak)
+
+
+def summing(image: Image) -> Summing:
+    return Summing(image.peak)
+
+
+@pytest.mark.parametrize(
+    ("step", "form", "told"),
+    [
+        (columnless, "csv", "output 'n': its row of numbers breaks: AttributeError: "),
+        (columnless, "jsonl", "output 'n': its line of JSON breaks: AttributeError: "),
+        (summing, "jsonl", "output 'n': its line of JSON breaks: LookupError: no sum ("),
+    ],
+)
+def test_a_record_that_cannot_be_written_is_told_by_its_output(
+    hand_made: Path, monkeypatch: pytest.MonkeyPatch, step: Any, form: str, told: str
+) -> None:
+    install(monkeypatch, hand_made, steps={"s": step})
+    (hand_made / "r.txt").write_text("1\n2\n")
+    text = "{pipeline: p, nodes: {n: {step: s, in: frame}}, outputs: [n]}"
+    (hand_made / "p.yaml").write_text(text)
+    got = call("run", "p.yaml", "r.txt", "--format", form)
+    assert got.exit_code == 2
+    assert f"error: {told}" in got.stderr

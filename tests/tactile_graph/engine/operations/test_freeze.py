@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from helpers_graphs import frame, registry
+from tactile_graph import Image, loads
 from tactile_graph.engine.operations.freeze import freeze
+from tactile_graph.engine.outcomes.outcome import Failed
+from tactile_graph.engine.written import AFTER_FRAMES
 
 if TYPE_CHECKING:
     from decimal import Decimal
@@ -63,3 +67,65 @@ def test_nothing_is_copied_and_lists_become_tuples() -> None:
 @pytest.mark.parametrize("value", [None, 1, "x", Hidden(3), object(), range(3)])  # type: ignore[arg-type]
 def test_what_holds_no_array_is_left_as_it_is(value: Any) -> None:
     assert freeze(value) is value
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    level: list[float]
+    by_name: dict[str, list[float]]
+
+
+@pytest.mark.parametrize("wrap", [lambda it: it, lambda it: Record(0, it), lambda it: (it,)])
+def test_a_list_within_a_record_is_the_results_own(wrap: Any) -> None:
+    track = Track([1.0], {"a": [2.0]})
+    frozen = freeze(wrap(track))
+    got = getattr(frozen, "inner", frozen[0] if isinstance(frozen, tuple) else frozen)
+    track.level.append(3.0)
+    track.by_name["a"].append(3.0)
+    assert got == Track((1.0,), {"a": (2.0,)})  # type: ignore[arg-type]
+    assert track.level == [1.0, 3.0]  # the step's own stays as it is
+
+
+def test_a_record_without_a_list_is_not_copied() -> None:
+    record = Record(array(), (1, Record(array())))
+    assert freeze(record) is record
+
+
+def answers(step: Any, n: int = 3) -> list[Any]:
+    text = "pipeline: p\nnodes:\n  a: {step: s, in: frame}\noutputs: [a]\n"
+    runner = loads(text, "p.yaml", registry({"s": step})).runner()
+    return [runner(frame(i)).outcome("a") for i in range(n)]
+
+
+class History:
+    def __init__(self) -> None:
+        self.level: list[float] = []
+
+    def __call__(self, image: Image) -> Track:
+        self.level.append(float(image.total))
+        return Track(self.level, {})
+
+
+def test_a_state_that_is_handed_out_in_a_record_changes_no_earlier_result() -> None:
+    assert [len(got.level) for got in answers(History)] == [1, 2, 3]
+
+
+def selfish(image: Image) -> Record:
+    record = Record(0)
+    record.inner = Record(1, [record])
+    return record
+
+
+@pytest.mark.parametrize(
+    "n",
+    [
+        pytest.param(2, id="called"),
+        pytest.param(AFTER_FRAMES + 2, id="written", marks=pytest.mark.slow),
+    ],
+)
+def test_a_record_that_holds_itself_fails_its_node_alone(n: int) -> None:
+    for got in answers(selfish, n)[-2:]:
+        assert isinstance(got, Failed)
+        assert got.origin == "a"
+        assert got.reason.startswith("TypeError: what the step returned holds itself, or is nested")
+        assert not got.where  # no line of code is to blame

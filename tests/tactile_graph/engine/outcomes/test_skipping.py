@@ -162,6 +162,8 @@ def test_asking_for_what_is_not_there_names_what_is_near() -> None:
         run(p, only=["bigg"])
     with pytest.raises(UsageError, match="no node or output named 'bgi'; did you mean 'big'"):
         run(p).outcome("bgi")
+    with pytest.raises(UsageError, match=r"named 'zz'; there are: big, v$"):
+        run(p).outcome("zz")
     with pytest.raises(UsageError, match=r"big \(int\) has no field 'x'"):
         run(p, only=["big.x"])
 

@@ -1,0 +1,90 @@
+"""Steps that end their process, or never return, are told; no other step's trial is lost."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tactile_graph.cli.plugin_check import show_checked
+from tactile_graph.plugins import registry
+from tactile_graph.testing import apart
+from tactile_graph.testing.apart import Apart
+
+pytestmark = pytest.mark.slow
+PLUGIN = """
+import os
+import time
+
+from tactile_graph import Mask, hookimpl
+
+
+def ends(mask: Mask) -> int:
+    if not mask.count:
+        os._exit(3)
+    return mask.count
+
+
+def never_returns(mask: Mask) -> int:
+    while not mask.count:
+        try:
+            time.sleep(0.01)
+        except BaseException:  # what stops it too
+            continue
+    return mask.count
+
+
+def good(mask: Mask) -> int:
+    return mask.count
+
+
+@hookimpl
+def tactile_graph_steps():
+    return {"ends": ends, "never_returns": never_returns, "good": good}
+
+
+@hookimpl
+def tactile_graph_isolated():
+    return {"ends": 0.5}
+"""
+
+
+@pytest.fixture
+def found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[registry.Registry]:
+    about = tmp_path / "rough-0.1.dist-info"
+    about.mkdir()
+    (tmp_path / "rough.py").write_text(PLUGIN)
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: rough\nVersion: 0.1\n")
+    (about / "entry_points.txt").write_text("[tactile_graph]\nrough = rough\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(registry, "_override", "rough")
+    registry.installed.cache_clear()
+    yield registry.installed()
+    registry.installed.cache_clear()
+
+
+def test_a_step_that_ends_its_process_or_never_returns_costs_its_own_trial(
+    found: registry.Registry, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(apart, "GRACE_S", 0.0)
+    monkeypatch.setattr(apart, "IDLE", 0.4)
+    start_s = time.monotonic()
+    assert not show_checked(found, "rough")
+    assert time.monotonic() - start_s < 60.0
+    case = "an image without cells"
+    assert capsys.readouterr().out.splitlines() == [
+        "rough (rough 0.1): 2 broken",
+        f"  step 'ends': {case}: ended its process with code 3",
+        f"  step 'never_returns': {case}: was stopped, since it had not ended after 2 s",
+    ]
+
+
+def test_steps_of_a_registry_that_is_not_what_is_installed_are_tried_here(
+    found: registry.Registry,
+) -> None:
+    rows = [("mine", "my-package", "1", lambda: __import__("rough"))]
+    trier = Apart(registry.Registry(rows))
+    assert trier.examine("good").n_values > 15
+    assert trier._process is None
