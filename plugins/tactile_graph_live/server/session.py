@@ -319,8 +319,9 @@ class Session:
         task.add_done_callback(self._tasks.discard)
 
     async def _save(self, name: str) -> None:
-        text = self._editor.now.graph.yaml
-        path = await asyncio.to_thread(save, self._setup.folder, name, text)
+        now = self._editor.now
+        text, file = now.graph.yaml, now.draft.pipeline.file
+        path = await asyncio.to_thread(save, self._setup.folder, name, text, file)
         self._tell(f"wrote {path}")
 
     # -- recording ---------------------------------------------------------------------------------

@@ -265,9 +265,11 @@ def _show(found: Tuned) -> None:
 def _written(found: Tuned, asked: _Options) -> Iterator[str]:
     """Write the files asked for, and yield their names."""
     from tactile_graph.files import write_whole
+    from tactile_graph.inspect import moved
 
     if asked.written is not None:
-        write_whole(asked.written, found.text)
+        own = found.pipeline
+        write_whole(asked.written, moved(found.text, own.file, asked.written, own.registry))
         yield asked.written
     if asked.plot is not None:
         from tactile_graph_tune.output.figure import write_figure
