@@ -31,9 +31,7 @@ def test_what_is_neither_is_refused(text):
 
 
 def test_too_many_values_are_refused_before_they_are_made():
-    with pytest.raises(
-        UsageError, match=r"^a\.b: 1000000000000 combinations of values, at most 32"
-    ):
+    with pytest.raises(UsageError, match="1000000000000 combinations of values, at most 32"):
         parse_free("a.b=0:1:1000000000000")
 
 
