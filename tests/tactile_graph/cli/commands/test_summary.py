@@ -142,7 +142,7 @@ def test_people_get_what_fits_and_are_told_the_rest() -> None:
 
 @pytest.mark.parametrize(
     ("width", "gone"),
-    [(120, ""), (60, "5 %, 95 % ("), (30, "5 %, median, 95 %, least, most (")],
+    [(120, ""), (60, "5 %, 95 % ("), (40, "5 %, median, 95 %, least, most (")],
 )
 def test_a_narrow_terminal_shows_names_and_numbers_whole_and_says_what_is_left_out(
     width: int, gone: str
