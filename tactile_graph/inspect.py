@@ -12,7 +12,9 @@ A plugin's steps need none of this. What compares, audits, tunes or explains pip
   as plain data (`as_data`, `without_nan`); which shape a type is (`shape_kind`) and what of
   it is held against the truth (`measures_of`);
 - its rows for tables, one for each object where there are several (`make_table`, `Table`);
-- `Replay`: what a plan alone would have come to, from a run that settled more.
+- `Replay`: what a plan alone would have come to, from a run that settled more;
+- for what writes pipelines: a file's text for another folder (`moved`), and how a file there names
+  the pipelines that this one does (`named_from`).
 """
 
 from tactile_graph.engine.outcomes.outcome import (
@@ -32,6 +34,7 @@ from tactile_graph.engine.tables.table import Table, make_table
 from tactile_graph.engine.tables.truth import measures_of, shape_kind
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import FRAME, Graph, Node, NodeKind, Source, node_key
+from tactile_graph.pipeline.moved import moved, named_from
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.wiring import Ref, arms, field_type, public_fields
 
@@ -60,6 +63,8 @@ __all__ = [
     "make_plan",
     "make_table",
     "measures_of",
+    "moved",
+    "named_from",
     "node_key",
     "plain",
     "public_fields",

@@ -109,10 +109,7 @@ class Request:
         every = {**self.pipeline.free, **{f.name: f.values for f in self.free}}
         n = math.prod(map(len, every.values()))
         if n > MOST_VARIANTS:
-            raise UsageError(
-                f"{', '.join(every)}: {n} combinations of values, at most {MOST_VARIANTS}: name "
-                "fewer values (--free node.setting=low:high:count), or mark fewer settings free"
-            )
+            raise UsageError(_too_many(", ".join(every), n))
         combined = product(*every.values()) if every else ()
         return [{}, *(dict(zip(every, values, strict=True)) for values in combined)]
 
@@ -125,18 +122,25 @@ def parse_free(text: str) -> Free:
     Raises
     ------
     UsageError
-        If it spells none of them.
+        If it spells none of them, or more values than can be tried.
     """
     name, sign, given = (part.strip() for part in text.partition("="))
     if not sign or "." not in name.strip(".") or not given:
         raise UsageError(f"--free {text}: must be node.setting=low:high, low:high:count, or a,b,c")
     if ":" in given:
-        return Free(name, _between(text, given.split(":")))
+        return Free(name, _between(name, text, given.split(":")))
     listed = assignment("--free", f"{name}=[{given}]")[1]
     return Free(name, tuple(listed))
 
 
-def _between(text: str, parts: Sequence[str]) -> tuple[float, ...]:
+def _too_many(names: str, n: int) -> str:
+    return (
+        f"{names}: {n} combinations of values, at most {MOST_VARIANTS}: name fewer values "
+        "(--free node.setting=low:high:count), or mark fewer settings free"
+    )
+
+
+def _between(name: str, text: str, parts: Sequence[str]) -> tuple[float, ...]:
     try:
         low, high = (float(p) for p in parts[:2])
         n = int(parts[2]) if len(parts) == 3 else STEPS
@@ -146,5 +150,7 @@ def _between(text: str, parts: Sequence[str]) -> tuple[float, ...]:
         raise UsageError(
             f"--free {text}: must be low:high or low:high:count, low below high, 2 values or more"
         )
+    if n > MOST_VARIANTS:
+        raise UsageError(_too_many(name, n))
     spaced = np.geomspace if low > 0.0 else np.linspace
     return tuple(float(f"{v:.3g}") for v in spaced(low, high, n))

@@ -74,14 +74,14 @@ def find(name: str | Path, registry: Registry, file: str = "") -> Path:
         )
     if isinstance(name, Path) or text.endswith((".yaml", ".yml")) or "/" in text:
         path = Path(name)
-        if _is_file(path):
+        if is_file(path):
             return path
         if _is_folder(path):
             raise UsageError(f"{text!r} is a folder; name a file in it")
         hint = did_you_mean(path.name, _siblings(path))
         raise UsageError(f"no pipeline file {text!r}{hint}")
     if not registry.has("pipelines", text):
-        if _is_file(Path(text)):
+        if is_file(Path(text)):
             raise UsageError(
                 f"{text!r} is a file, but a pipeline file ends in .yaml; recordings come after the"
                 " pipeline's name"
@@ -93,7 +93,13 @@ def find(name: str | Path, registry: Registry, file: str = "") -> Path:
     return registry.path("pipelines", text, file)
 
 
-def _is_file(path: Path) -> bool:
+def beside(name: str, file: str | Path) -> Path | None:
+    """Return the pipeline file of that name as it is seen from a file's folder; None for none."""
+    path = Path(file).parent / name
+    return path if name.endswith((".yaml", ".yml")) and is_file(path) else None
+
+
+def is_file(path: Path) -> bool:
     """Return whether there is something to read: a file, a pipe, /dev/stdin."""
     try:
         if path.exists():
@@ -180,8 +186,7 @@ def _load_inner(
     """Return the graph that the pipeline in ``file`` uses by name."""
     if "/" in name and not name.endswith((".yaml", ".yml")):
         raise UsageError(f"{name!r}: a pipeline file ends in .yaml")
-    beside = Path(file).parent / name
-    found = beside if name.endswith((".yaml", ".yml")) and _is_file(beside) else name
+    found = beside(name, file) or name
     names, files = [n for n, _ in opened.within], [p for _, p in opened.within]
     _refuse_circle(names, names, name)
     path = find(found, registry, file)
@@ -213,7 +218,7 @@ def _parent(name: str, document: Document, registry: Registry) -> str:
     """Return the name of what a file's pipeline evolves from, as it is understood elsewhere too."""
     if not name:
         return name
-    if name.endswith((".yaml", ".yml")) and _is_file(Path(document.file).parent / name):
+    if beside(name, document.file) is not None:
         return name
     try:
         return registry.spelled("pipelines", name, document.file)

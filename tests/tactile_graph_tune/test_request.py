@@ -30,6 +30,11 @@ def test_what_is_neither_is_refused(text):
         parse_free(text)
 
 
+def test_too_many_values_are_refused_before_they_are_made():
+    with pytest.raises(UsageError, match="1000000000000 combinations of values, at most 32"):
+        parse_free("a.b=0:1:1000000000000")
+
+
 def test_combinations_come_behind_what_the_file_has(hand_made):
     free = (Free("footprint.level_v", (0.3, 0.6)), Free("first.fail_at_x", (-1.0,)))
     found = Request(loads(LADDER), free=free).variants()

@@ -17,9 +17,11 @@ def learn_reliefs(database: Path, timeout_s: float) -> None:
     """Learn the relief of every known object, of presses that 'learn --keep-presses' kept.
 
     How the pad reads is learned with them, and how far presses are from their own relief where it
-    was learned without them, by which strangers are told. It takes some seconds an object on a
-    small pad, ten on a large one. Learn again when readings were added. 'tactile-graph identify
-    --pipeline identify-reliefs' then names presses by them.
+    was learned without them, by which strangers are told. An object of 20 presses takes ten seconds
+    on a pad of 16 x 16 cells, more on a larger one. Where other work keeps the processors busy,
+    OPENBLAS_NUM_THREADS=1 in the environment keeps that from being several times as long. Learn
+    again when readings were added. 'tactile-graph identify --pipeline identify-reliefs' then names
+    presses by them.
     """
     from tactile_graph.compiled import warm_up
     from tactile_graph_classifiers.database.store import ObjectDatabase

@@ -56,13 +56,13 @@ def descend(
     sizes = np.hypot(*(presses.boxes[:, 2:] - 2 * MARGIN).T)
     radius = max(2.0, float(np.median(sizes)) / 2.8)
     unit = 0.3 * np.array([1, 1, 1 / radius, usual, usual / radius, usual / radius])
-    ups, base, begun = [np.eye(n_nodes), *scales(n_nodes)], relief.presses, relief.depth / usual
-    ends = np.cumsum([0, *(up.shape[1] ** 2 for up in ups)])
+    ups, base, begun = scales(n_nodes), relief.presses, relief.depth / usual
+    ends = np.cumsum([n_nodes**2, *(up.shape[1] ** 2 for up in ups)])
     by_node, by_number = np.zeros((n_nodes, n_nodes)), np.zeros(base.shape)
     taps, law = pad.taps, pad.numbers(relief.soft)
 
     def depth(x: Array) -> Array:
-        out = begun.copy()
+        out = begun + x[: ends[0]].reshape(begun.shape)
         for up, a, b in zip(ups, ends, ends[1:], strict=False):
             out += up @ x[a:b].reshape(up.shape[1], -1) @ up.T
         return out
@@ -76,7 +76,7 @@ def descend(
                             pad.gains, taps, law, by_node, by_number)  # fmt: skip
         more, gradient = kinks(now)
         gradient += by_node * usual
-        parts = [(up.T @ gradient @ up).ravel() for up in ups]
+        parts = [gradient.ravel(), *((up.T @ gradient @ up).ravel() for up in ups)]
         return total + more, np.concatenate([*parts, (by_number * unit).ravel()])
 
     x = minimize(cost, np.zeros(ends[-1] + base.size), jac=True, method="L-BFGS-B",

@@ -194,7 +194,7 @@ class _Taking:
 def _show(found: Audit, out: Any) -> None:
     from rich.text import Text
 
-    from tactile_graph_compare.output.shown import fitted, rich_table
+    from tactile_graph_compare.output.shown import print_table
 
     n, pipeline = found.n_frames, found.pipeline
     heading = f"{pipeline.name}, {n} of {found.n_seen} frames"
@@ -203,9 +203,7 @@ def _show(found: Audit, out: Any) -> None:
     gone: list[str] = []
     for table in (worth_table(found), error_table(found)):
         if table.rows:
-            narrow, hidden = fitted(table, out.width)
-            out.print(rich_table(narrow))
-            gone += hidden
+            gone += [name for name in print_table(table, out) if name not in gone]
     if gone:
         text = f"not shown, for want of width: {', '.join(gone)}; --json gives all"
         out.print(text, style="dim", soft_wrap=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import groupby
 
 from rich import box
@@ -33,8 +34,7 @@ def show(comparison: Comparison, console: Console) -> None:
     gone: list[str] = []
     for table in tables(comparison):
         console.print()
-        narrow, hidden = fitted(table, console.width)
-        console.print(rich_table(narrow))
+        hidden = print_table(table, console)
         gone += [h for h in hidden if h not in gone]
     console.print()
     if gone:
@@ -54,15 +54,37 @@ def show(comparison: Comparison, console: Console) -> None:
     console.print(Text(saving(comparison), style="dim"), soft_wrap=True)
 
 
+def print_table(table: Table, console: Console) -> list[str]:
+    """Print a table, and return which columns a console has no room for.
+
+    Where it has none even for those that have to stay, each row is a line with all of them.
+    """
+    narrow, gone = fitted(table, console.width)
+    if _width(narrow) <= console.width:
+        console.print(rich_table(narrow))
+        return gone
+    console.print(Text(table.title, style="bold"), soft_wrap=True)
+    for line in row_lines(table):
+        console.print(line)
+    if table.note:
+        console.print(Text(table.note, style="dim"))
+    return []
+
+
 def fitted(table: Table, width: int) -> tuple[Table, list[str]]:
     """Return the table without columns a console has no room for, and which these are."""
     gone: list[str] = []
     for column in table.can_go:
-        if sum(_least(table, i) + GAP for i in range(len(table.columns))) <= width:
+        if _width(table) <= width:
             break
         table = table.without(column)
         gone.append(column)
     return table, gone
+
+
+def _width(table: Table) -> int:
+    """Return how narrow a table can be."""
+    return sum(_least(table, i) + GAP for i in range(len(table.columns)))
 
 
 def _least(table: Table, column: int) -> int:
@@ -72,6 +94,23 @@ def _least(table: Table, column: int) -> int:
     if name in LEFT and name != "quantity":
         cells = [word for cell in cells for word in cell.split()]
     return max(map(cell_len, cells))
+
+
+def row_lines(table: Table) -> Iterator[Text]:
+    """Yield a line for each row, its cells by name; above those of a quantity, that."""
+    grouped = table.columns[0] == "quantity"
+    for quantity, group in groupby(table.rows, key=lambda row: row[0] if grouped else ""):
+        if grouped:
+            yield Text(quantity, style="bold")
+        for row in group:
+            named = list(zip(table.columns, row, strict=True))[grouped:]
+            line, parts = Text("  " * grouped), []
+            if named[0][0] in LEFT:
+                line.append(f"{named.pop(0)[1]}: ")
+            for name, cell in named:
+                if cell:
+                    parts.append(Text(f"{name.strip()} ").append(cell, STYLES.get(cell, "")))
+            yield line + Text(", ").join(parts)
 
 
 def rich_table(table: Table) -> RichTable:

@@ -57,7 +57,7 @@ class Bench:
         self._newest: Frame | None = None
         self._newest_s = time.monotonic()
         self._shown: tuple[str, ...] = ()
-        self._baseline: NDArray[np.float64] | None = None
+        self._baseline = order.baseline
         self._taring: Taring | None = None
         self._wants = wire.Want(False, False)
         self._held = self._ended = self._restart = self._idle = False
@@ -214,8 +214,7 @@ class Bench:
         baseline = self._taring.add(frame)
         if baseline is not None:
             n, self._taring = self._taring.n_frames, None
-            self._baseline = baseline
-            self._photographer.forget_range()
+            self._take_off(baseline)
             self._say(f"tared by the median of {n} frames")
 
     # -- what it is told ---------------------------------------------------------------------------
@@ -279,9 +278,13 @@ class Bench:
     def _tare(self, on: bool) -> None:
         self._taring = Taring() if on else None
         if not on:
-            self._baseline = None
-            self._photographer.forget_range()
+            self._take_off(None)
             self._say("the readings are shown as they come")
+
+    def _take_off(self, baseline: NDArray[np.float64] | None) -> None:
+        self._baseline = baseline
+        self._photographer.forget_range()
+        self._outbox.note(wire.Tared(baseline))
 
     def _fetch(self, message: wire.Fetch) -> None:
         found = (

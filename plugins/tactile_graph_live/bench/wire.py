@@ -43,6 +43,8 @@ class Order:
         The plugins that are chosen.
     beside : bytes
         A variant to run in what time is left, pickled; empty for none.
+    baseline : (rows, columns) array or None
+        What an earlier bench was tared by.
     """
 
     pickled: bytes
@@ -55,6 +57,7 @@ class Order:
     capacity: int | None = None
     selection: str = ""
     beside: bytes = b""
+    baseline: NDArray[np.float64] | None = None
 
 
 # -- from the bench ------------------------------------------------------------------------------
@@ -143,6 +146,13 @@ class Kept:
 
 
 @dataclass(frozen=True)
+class Tared:
+    """What is taken off the readings from now on; None where that was taken back."""
+
+    baseline: NDArray[np.float64] | None
+
+
+@dataclass(frozen=True)
 class Swapped:
     """The pipeline of this version runs, or why it does not.
 
@@ -182,7 +192,7 @@ class Compared:
     said: tuple[dict[str, Any], ...]
 
 
-FromBench = Snapshot | Rows | Taken | Summary | Kept | Swapped | Said | Ended | Compared
+FromBench = Snapshot | Rows | Taken | Summary | Kept | Tared | Swapped | Said | Ended | Compared
 
 # -- to the bench --------------------------------------------------------------------------------
 

@@ -182,15 +182,25 @@ def _raw(error: BaseException) -> str:
     return f"{type(error).__name__}: {text_of(error)}".removesuffix(": ")
 
 
-def save(folder: Path, name: str, text: str) -> Path:
+def save(folder: Path, name: str, text: str, file: str) -> Path:
     """Write a pipeline into a folder; a file that is there stays.
+
+    Parameters
+    ----------
+    folder : Path
+    name : str
+    text : str
+    file : str
+        Where the pipeline was read: what it names beside that is named from the folder.
 
     Raises
     ------
     UsageError
-        If the name is no plain name of a file, one of it is there, or it cannot be written.
+        If the name is no plain name of a file, one of it is there, it cannot be written, or the
+        pipeline would be wrong there.
     """
     from tactile_graph.files import write_whole
+    from tactile_graph.inspect import moved
 
     stem = name.removesuffix(".yml").removesuffix(".yaml")
     if not stem or not all(c.isascii() and (c.isalnum() or c in "-_.") for c in stem) or (
@@ -203,5 +213,5 @@ def save(folder: Path, name: str, text: str) -> Path:
     path = folder / f"{stem}.yaml"
     if path.exists() or path.is_symlink():
         raise UsageError(f"{path.name} is there already; choose another name")
-    write_whole(path, text)
+    write_whole(path, moved(text, file, path))
     return path

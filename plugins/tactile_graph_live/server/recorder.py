@@ -52,6 +52,7 @@ class Recorder:
         self.path = free_name(folder, name, datetime.now())
         self.label = label
         self.n_lost = 0
+        self.n_breaks = 0
         self._store = StoreWriter(self.path, about=about)
         self._failed = failed
         self._queue: SimpleQueue[Sequence[Frame] | None] = SimpleQueue()
@@ -80,6 +81,11 @@ class Recorder:
             self._after_loss = False
         label = self.label
         self._queue.put([replace(f, label=label) for f in frames] if label else frames)
+
+    def broken_off(self) -> None:
+        """Note that nobody knows how many frames are lost before the next one."""
+        self.n_breaks += 1
+        self._after_loss = True
 
     def close(self) -> int:
         """Write what waits; return how many frames the store holds."""

@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from starlette.websockets import WebSocket
 
 from tactile_graph import Pipeline
@@ -91,6 +93,8 @@ class Session:
         self._taking: _Recording | None = None
         self._recording_changes = asyncio.Lock()
         self._closing = False
+        self._baseline: NDArray[np.float64] | None = None
+        self._taring = False
         self._compared: asyncio.Queue[wire.Compared] = asyncio.Queue()
         self._starts: deque[float] = deque(maxlen=MOST_STARTS)
         self._tasks: set[asyncio.Task[None]] = set()
@@ -137,6 +141,7 @@ class Session:
             pickled=pickle.dumps(now.draft.pipeline),
             version=now.graph.version,
             selection=selected(),
+            baseline=self._baseline,
         )
 
         def take(message: wire.FromBench) -> None:
@@ -144,6 +149,8 @@ class Session:
 
         self._link = BenchLink(order, take, lambda: self._in_loop(self._gone))
         self._tell_wants()
+        if self._taring:
+            self._tare()
         self._send(wire.Show(tuple(sorted(self.viewers.shown))))
 
     def _in_loop(self, call: Callable[..., None], *arguments: Any) -> None:
@@ -165,14 +172,23 @@ class Session:
                 self._osc.close()
 
     def _gone(self) -> None:
-        """Start another bench where this one died, unless it does nothing else."""
+        """Start another bench where this one died, unless it does nothing else.
+
+        It takes off what this one was tared by; frames that came meanwhile are lost.
+        """
         if self.over.is_set():
             return
         often = len(self._starts) == MOST_STARTS
         if often and time.monotonic() - self._starts[0] < STARTS_WITHIN_S:
             self._fail("the process that runs the pipeline died again and again")
             return
-        self._tell("the process that runs the pipeline died; it is started anew", "error")
+        recorded = ""
+        if self._taking is not None:
+            self._taking.recorder.broken_off()
+            recorded = "; frames that come meanwhile are not recorded, which leaves a gap"
+        died = "the process that runs the pipeline died; it is started anew"
+        self._tell(died + recorded, "error")
+        self._vitals.bench_died()
         self._editor.bench_died()
         self._start_bench()
 
@@ -196,6 +212,8 @@ class Session:
                 self._taking.take(message)
         elif isinstance(message, wire.Kept):
             self._gaze.found(message)
+        elif isinstance(message, wire.Tared):
+            self._baseline, self._taring = message.baseline, False
         elif isinstance(message, wire.Swapped):
             self._editor.swapped(message)
         elif isinstance(message, wire.Compared):
@@ -275,7 +293,7 @@ class Session:
             "live": gaze.live,
             "step": gaze.step,
             "scrub": gaze.scrub,
-            "tare": lambda: self._send(wire.Tare(True)),
+            "tare": self._tare,
             "untare": lambda: self._send(wire.Tare(False)),
             "record": lambda on, label: self._later(self._record(on, label)),
             "set": lambda node, setting, value: self._later(self._editor.set(node, setting, value)),
@@ -300,6 +318,10 @@ class Session:
         except TactileGraphError as error:
             viewer.tell("told", encoded(messages.Told(visible(str(error)), "error")))
 
+    def _tare(self) -> None:
+        self._taring = True
+        self._send(wire.Tare(True))
+
     def _send(self, message: wire.ToBench) -> None:
         self._link.send(message)
 
@@ -319,8 +341,9 @@ class Session:
         task.add_done_callback(self._tasks.discard)
 
     async def _save(self, name: str) -> None:
-        text = self._editor.now.graph.yaml
-        path = await asyncio.to_thread(save, self._setup.folder, name, text)
+        now = self._editor.now
+        text, file = now.graph.yaml, now.draft.pipeline.file
+        path = await asyncio.to_thread(save, self._setup.folder, name, text, file)
         self._tell(f"wrote {path}")
 
     # -- recording ---------------------------------------------------------------------------------
@@ -382,9 +405,7 @@ class Session:
             self._tell("the last frames of the recording did not come in time", "warning")
         n = await asyncio.to_thread(taking.recorder.close)
         self._taking = None
-        lost = f", {taking.recorder.n_lost} lost" if taking.recorder.n_lost else ""
-        what = f"{n} frame{'s' if n != 1 else ''} to {taking.recorder.path}" if n else "no frame"
-        self._tell(f"recorded {what}{lost}")
+        self._tell(f"recorded {_told(taking.recorder, n)}")
 
 
 class _Recording:
@@ -400,6 +421,19 @@ class _Recording:
         self.recorder.take(taken.frames, taken.n_lost)
         if taken.last:
             self.last.set()
+
+
+def _told(recorder: Recorder, n_frames: int) -> str:
+    """Return in words what a recording holds, and what it does not."""
+    told = "no frame"
+    if n_frames:
+        told = f"{n_frames} frame{'s' if n_frames != 1 else ''} to {recorder.path}"
+    if recorder.n_lost:
+        told += f", {recorder.n_lost} lost"
+    if n := recorder.n_breaks:
+        times = f" {n} times" if n > 1 else ""
+        told += f"; more are lost{times}, uncounted, where the pipeline's process died"
+    return told
 
 
 def folder_of(name: str) -> Path:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,7 @@ class Vitals:
     """Gathers what the bench and the viewers tell of times and counts."""
 
     def __init__(self) -> None:
-        self.summary = EMPTY
+        self.summary = self._before = EMPTY
         self._latencies: deque[tuple[float, Times]] = deque()
         self._pages: deque[tuple[float, Times]] = deque()
         self._counts: deque[tuple[float, int]] = deque()
@@ -33,11 +34,22 @@ class Vitals:
     def add(self, summary: Summary) -> None:
         """Take a summary of the bench."""
         now = time.monotonic()
-        self.summary = summary
+        before = self._before
+        self.summary = summary = replace(
+            summary,
+            n_frames=before.n_frames + summary.n_frames,
+            n_lost=before.n_lost + summary.n_lost,
+            n_shed=before.n_shed + summary.n_shed,
+            n_missed=before.n_missed + summary.n_missed,
+        )
         self._latencies.append((now, summary.latencies_us))
         self._counts.append((now, summary.n_frames))
         while len(self._counts) > 2 and self._counts[1][0] < now - RATE_S:
             self._counts.popleft()
+
+    def bench_died(self) -> None:
+        """Count on from here: the next bench begins at 0."""
+        self._before = self.summary
 
     def drawn(self, arrived_ns: int) -> None:
         """Note that a viewer has drawn a frame that arrived then."""

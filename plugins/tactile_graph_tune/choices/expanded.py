@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tactile_graph import load
-from tactile_graph.inspect import FRAME
+from tactile_graph.inspect import FRAME, named_from
 from tactile_graph.pipeline.document import read_document
 from tactile_graph.plugins.registry import Registry
 
@@ -71,7 +71,11 @@ def _inner(node: Mapping[str, Any], file: str, registry: Registry) -> Data | Non
         its = data["nodes"][inner]
         its["with"] = {**(its.get("with") or {}), setting: value}
     data = {"conditions": {}, **data, "outputs": outputs}
-    return {"conditions": {}, **expanded(data, used.file, registry)}
+    found = {"conditions": {}, **expanded(data, used.file, registry)}
+    for its in found["nodes"].values():
+        if "use" in its:
+            its["use"] = named_from(its["use"], used.file, file)
+    return found
 
 
 def _renamer(name: str, inner: Data, taken: set[str]) -> Renamed:

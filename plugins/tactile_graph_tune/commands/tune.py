@@ -239,7 +239,7 @@ def _show(found: Tuned) -> None:
     from rich.text import Text
 
     from tactile_graph.cli.terminal import console
-    from tactile_graph_compare.output.shown import fitted, rich_table
+    from tactile_graph_compare.output.shown import print_table
     from tactile_graph_tune.output.tables import (
         doubt,
         front_table,
@@ -251,10 +251,13 @@ def _show(found: Tuned) -> None:
 
     out = console()
     out.print(Text(heading(found), style="bold"), soft_wrap=True)
+    gone: list[str] = []
     for table in (points_table(found), front_table(found), guards_table(found)):
         if table.rows:
-            narrow, _ = fitted(table, out.width)
-            out.print(rich_table(narrow))
+            gone += [n for n in (c.strip() for c in print_table(table, out)) if n not in gone]
+    if gone:
+        text = f"not shown, for want of width: {', '.join(gone)}; --json gives all"
+        out.print(Text(text, style="dim"), soft_wrap=True)
     for name, value in found.settings.items():
         out.print(Text(f"{name} = {value}"))
     out.print(Text(verdict(found), style="bold"), soft_wrap=True)
@@ -265,9 +268,11 @@ def _show(found: Tuned) -> None:
 def _written(found: Tuned, asked: _Options) -> Iterator[str]:
     """Write the files asked for, and yield their names."""
     from tactile_graph.files import write_whole
+    from tactile_graph.inspect import moved
 
     if asked.written is not None:
-        write_whole(asked.written, found.text)
+        own = found.pipeline
+        write_whole(asked.written, moved(found.text, own.file, asked.written, own.registry))
         yield asked.written
     if asked.plot is not None:
         from tactile_graph_tune.output.figure import write_figure

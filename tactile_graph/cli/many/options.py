@@ -219,6 +219,10 @@ def shared_for(
 
 def side_by_side(place: Place) -> str:
     """Return what must be said of times that workers took."""
+    from tactile_graph.many.processes import PROCESSES, most_workers
+
     n = place.n_workers
+    if n is not None and place.kind is PROCESSES:
+        n = min(n, most_workers())
     how = f"{n} workers" if n is not None else "several workers"
     return f"times were taken with {how} side by side; measure them with one process alone"

@@ -25,6 +25,9 @@ LONGEST_NAME = 36
 STYLES = {"ok": "green", "skipped": "yellow", "failed": "red"}
 LACKING = ("skipped", "failed")
 STATISTICS = ("n", "mean", "5 %", "median", "95 %", "least", "most")
+CAN_GO = ("95 %", "5 %", "least", "most", "median")
+"""Statistics that a narrow terminal does without, the first first."""
+GAP = 2
 
 
 def show(console: Console, title: str, summary: Summary) -> None:
@@ -90,7 +93,7 @@ def _quantities(console: Console, summary: Summary) -> None:
     quantities = [q for q in quantities if told[q].n + told[q].n_not_finite]
     if not quantities:
         return
-    table = _table("", "unit", *STATISTICS)
+    rows, styles = [], []
     for quantity in quantities:
         numbers, unit = told[quantity], quantity.unit
         p5, median, p95 = numbers.quantiles((0.05, 0.5, 0.95))
@@ -99,11 +102,30 @@ def _quantities(console: Console, summary: Summary) -> None:
         n = str(numbers.n) + (
             f" (+{numbers.n_not_finite} no number)" if numbers.n_not_finite else ""
         )
-        style = "magenta" if _is_error(quantity) else ""
-        table.add_row(_called(quantity.key), unit, n, *(_cell(c, unit) for c in cells), style=style)
+        rows.append([_called(quantity.key), unit, n, *(_cell(c, unit) for c in cells)])
+        styles.append("magenta" if _is_error(quantity) else "")
+    kept = _kept(["", "unit", *STATISTICS], rows, console.width)
+    table = _table(*kept)
+    for row, style in zip(zip(*kept.values(), strict=True), styles, strict=True):
+        table.add_row(*row, style=style)
     console.print(table)
+    if gone := [name for name in STATISTICS if name not in kept]:
+        left_out = f"not shown for want of width: {', '.join(gone)} (--json gives all)"
+        console.print(left_out, style="dim", soft_wrap=True)
     if any(map(_is_error, quantities)):
         console.print("errors against the truth are without their sign", style="dim")
+
+
+def _kept(heads: list[str], rows: list[list[str]], width: int) -> dict[str, list[str]]:
+    """Return the columns a console has room for; of the first one words may stand in lines."""
+    kept = {h: [row[i] for row in rows] for i, h in enumerate(heads)}
+    least = {h: max(map(cell_len, (h, *cells))) for h, cells in kept.items()}
+    least[heads[0]] = max(cell_len(word) for name in kept[heads[0]] for word in name.split())
+    for name in CAN_GO:
+        if sum(least[h] + GAP for h in kept) - GAP <= width:
+            break
+        del kept[name]
+    return kept
 
 
 def _texts(group: Group) -> Iterator[Text]:
@@ -194,7 +216,7 @@ def _cell(value: float, unit: str) -> str:
 
 
 def _table(*heads: str) -> Table:
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+    table = Table(box=None, pad_edge=False, padding=(0, GAP, 0, 0), header_style="bold")
     for i, head in enumerate(heads):
         left: Any = "left" if i == 0 or head == "unit" else "right"
         table.add_column(head, justify=left, no_wrap=i > 0, overflow="fold", vertical="bottom")

@@ -320,6 +320,38 @@ def test_a_bench_that_dies_is_started_anew(command: Command) -> None:
         page.until("frame")
 
 
+def test_a_recording_and_a_tare_outlive_the_bench(folder: Path) -> None:
+    pytest.importorskip("zarr", reason="the extra `zarr` is not there")
+    endless = ("--source", "simulate", "--with", "frames=100000", "--rate", "40")
+    with running(folder, "mine.yaml", *endless) as command, Page(command) as page:
+        page.ask("record", on=True, label="")
+        page.ask("tare")
+        page.told("tared by the median")
+        page.until("pulse", tared=True)
+        os.kill(command.bench(), signal.SIGKILL)
+        page.told("not recorded, which leaves a gap")
+        n = page.until("pulse")["recording"]["frames"]
+        while (pulse := page.until("pulse"))["recording"]["frames"] < n + 10:
+            pass
+        assert pulse["tared"]
+        page.ask("record", on=False)
+        assert "process died" in page.told("recorded")["text"]
+    (store,) = folder.glob("*.zarr")
+    import tactile_graph as tg
+
+    frames = list(tg.loads(PIPELINE).with_source("recording", path=str(store)).frames())
+    assert sum(f.gap for f in frames) == 1
+
+
+def test_a_tare_that_is_under_way_outlives_the_bench(command: Command) -> None:
+    with Page(command) as page:
+        page.until("frame")
+        page.ask("tare")
+        time.sleep(0.1)  # thirty frames take 0.75 s
+        os.kill(command.bench(), signal.SIGKILL)
+        page.told("tared by the median")
+
+
 def test_tare_takes_off_what_lies_there(shared: Command) -> None:
     with Page(shared) as page:
         page.until("frame")

@@ -121,10 +121,27 @@ def test_an_error_without_a_place_is_told_without_one() -> None:
 
 
 def test_a_pipeline_is_saved_under_a_plain_name_only(tmp_path: Path) -> None:
-    assert save(tmp_path, "mine", FLOW) == tmp_path / "mine.yaml"
+    assert save(tmp_path, "mine", FLOW, "mine.yaml") == tmp_path / "mine.yaml"
     assert (tmp_path / "mine.yaml").read_text() == FLOW
     with pytest.raises(UsageError, match="there already"):
-        save(tmp_path, "mine.yaml", FLOW)
+        save(tmp_path, "mine.yaml", FLOW, "mine.yaml")
+
+
+def test_a_pipeline_saved_elsewhere_still_finds_what_it_uses(tmp_path: Path) -> None:
+    (tmp_path / "pipes").mkdir()
+    (tmp_path / "out").mkdir()
+    (tmp_path / "pipes/inner.yaml").write_text(FLOW)
+    text = "pipeline: outer   # mine\nnodes:\n  a: {use: inner.yaml, in: frame}\noutputs: [a]\n"
+    path = save(tmp_path / "out", "saved", text, str(tmp_path / "pipes/outer.yaml"))
+    assert path.read_text() == text.replace("inner.yaml", "../pipes/inner.yaml")
+    assert tg.load(path).outputs
+
+
+def test_a_pipeline_that_would_be_wrong_where_it_is_saved_is_not_written(tmp_path: Path) -> None:
+    text = FLOW.replace("threshold", "treshold")
+    with pytest.raises(UsageError, match="not written"):
+        save(tmp_path, "mine", text, "mine.yaml")
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(
@@ -147,7 +164,7 @@ def test_a_pipeline_is_saved_under_a_plain_name_only(tmp_path: Path) -> None:
 )
 def test_no_name_leads_out_of_the_folder(tmp_path: Path, name: str) -> None:
     with pytest.raises(UsageError, match="a name is of letters"):
-        save(tmp_path, name, FLOW)
+        save(tmp_path, name, FLOW, "mine.yaml")
     assert list(tmp_path.iterdir()) == []
 
 

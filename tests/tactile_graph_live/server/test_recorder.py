@@ -61,6 +61,20 @@ def test_every_frame_is_kept_with_the_label_of_its_moment(tmp_path: Path) -> Non
     assert failures == []
 
 
+def test_the_frame_after_a_break_of_unknown_length_follows_a_gap(tmp_path: Path) -> None:
+    pytest.importorskip("zarr", reason="the extra `zarr` is not there")
+    from tactile_graph import load
+
+    recorder = Recorder(tmp_path, "mine", "", {}, [].append)
+    recorder.take(frames(0, 2), 0)
+    recorder.broken_off()
+    recorder.take(frames(0, 2), 0)
+    assert recorder.close() == 4
+    assert (recorder.n_breaks, recorder.state.lost) == (1, 0)
+    source = load("circle-1").with_source("recording", path=str(recorder.path), quantity="counts")
+    assert [f.gap for f in source.frames()] == [False, False, True, False]
+
+
 def test_what_goes_wrong_is_told_and_closing_still_ends(tmp_path: Path) -> None:
     pytest.importorskip("zarr", reason="the extra `zarr` is not there")
     failures: list[str] = []

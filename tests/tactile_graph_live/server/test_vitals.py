@@ -49,6 +49,18 @@ def test_the_rate_is_that_of_the_last_second(clock: Clock) -> None:
     assert vitals.rate_hz() == 0.0
 
 
+def test_counts_go_on_where_a_bench_died(clock: Clock) -> None:
+    vitals = Vitals()
+    vitals.add(summary(100, []))
+    vitals.bench_died()
+    clock.now += 0.25
+    vitals.add(summary(25, []))
+    vitals.add(summary(50, []))
+    pulse = vitals.pulse(0, Recording(), paused=False)
+    assert (pulse.frames, pulse.lost, pulse.shed, pulse.missed) == (150, 4, 6, 2)
+    assert pulse.rate_hz == 200.0
+
+
 def test_latencies_of_all_frames_of_the_last_seconds_are_told(clock: Clock) -> None:
     vitals = Vitals()
     vitals.add(summary(1, [1e6]))

@@ -28,6 +28,19 @@ nodes:
   circle: {first_of: [quick, fixed]}
 outputs: [circle]
 """
+DEEP = """\
+pipeline: deep
+nodes:
+  circle: {step: disc, in: frame.mask}
+outputs: [circle]
+"""
+BETWEEN = """\
+pipeline: between
+nodes:
+  footprint: {step: pressed, in: frame, with: {level_v: 0.5}}
+  disc: {use: deep.yaml, in: footprint}
+outputs: [disc]
+"""
 
 
 @pytest.fixture
@@ -68,3 +81,14 @@ def test_what_has_no_single_place_in_the_file_stays_a_pipeline(hand_made, old, n
     (hand_made / "outer.yaml").write_text(text.replace(", with: {footprint.level_v: 0.6}", ""))
     its = declared(load("outer.yaml"), "circle")
     assert its.data["nodes"]["quick"]["use"] == "inner.yaml"
+
+
+def test_files_that_are_used_within_are_named_from_the_outer_one(hand_made):
+    (hand_made / "sub").mkdir()
+    (hand_made / "sub/deep.yaml").write_text(DEEP)
+    (hand_made / "sub/inner.yaml").write_text(BETWEEN)
+    (hand_made / "outer.yaml").write_text(OUTER.replace("inner.yaml", "sub/inner.yaml").replace(
+        "with: {footprint.level_v: 0.6}, ", ""))  # fmt: skip
+    its = declared(load("outer.yaml"), "circle")
+    assert its.data["nodes"]["quick_disc"]["use"] == "sub/deep.yaml"
+    assert its.resolved(its.text(its.rungs, its.given)).outputs

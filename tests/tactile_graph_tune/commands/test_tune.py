@@ -11,6 +11,12 @@ import pytest
 from helpers_cli import call
 from helpers_tune import LADDER
 
+INNER = """\
+pipeline: inner
+nodes:
+  circle: {step: disc, in: frame.mask}
+outputs: [circle]
+"""
 QUICK = ("--rounds", "1", "--field", "load.total", "--field", "first.radius_cm")
 
 
@@ -30,6 +36,19 @@ def test_a_ladder_comes_out_with_its_numbers_its_file_its_plot_and_all_figures(h
     data = json.loads(Path("out.json").read_text())
     assert data["weighed"] > 100
     assert data["points"]["tuned"]["run"]["error"]["mean"] <= 2.0
+
+
+@pytest.mark.slow
+def test_a_file_written_elsewhere_still_finds_what_it_uses(hand_made):
+    Path("sub").mkdir()
+    Path("out").mkdir()
+    Path("sub/inner.yaml").write_text(INNER)
+    Path("outer.yaml").write_text(LADDER.replace("{step: disc, in: merged, with: {fail_at_x: 1}}",
+                                                 "{use: sub/inner.yaml, in: merged}"))  # fmt: skip
+    got = call("tune", "outer.yaml", "--frames", "24", *QUICK[:4], "-o", "out/t.yaml")
+    assert got.exit_code == 0, got.output
+    assert "use: ../sub/inner.yaml" in Path("out/t.yaml").read_text()
+    assert call("check", "out/t.yaml").exit_code == 0
 
 
 @pytest.mark.slow

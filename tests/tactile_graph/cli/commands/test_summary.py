@@ -141,6 +141,25 @@ def test_people_get_what_fits_and_are_told_the_rest() -> None:
 
 
 @pytest.mark.parametrize(
+    ("width", "gone"),
+    [(120, ""), (60, "5 %, 95 % ("), (40, "5 %, median, 95 %, least, most (")],
+)
+def test_a_narrow_terminal_shows_names_and_numbers_whole_and_says_what_is_left_out(
+    width: int, gone: str
+) -> None:
+    from click.testing import CliRunner
+
+    from tactile_graph.cli import cli
+
+    Path("a.csv").write_text(CSV)
+    out = CliRunner(env={"COLUMNS": str(width)}).invoke(cli, ["summary", "a.csv"]).output
+    words = out.split()
+    assert {"circle", "turned", "error", "unit", "mean", "rad", "cm"} <= set(words), out
+    assert "1.000" in words, out
+    assert (f"not shown for want of width: {gone}" in out) == bool(gone)
+
+
+@pytest.mark.parametrize(
     ("content", "said"),
     [
         (b"a,b\n1,2\n", "bad: is no result of a run: has no columns 'frame' and '….outcome'"),

@@ -247,3 +247,11 @@ def test_a_worker_that_dies_of_a_frame_is_told(folder: Path) -> None:
               "--frames", "20", "--workers", "2", "--csv", "dead.csv")  # fmt: skip
     assert got.returncode == 0, got.stderr
     assert "frame 7: workers died of it each time: left out" in got.stdout + got.stderr
+
+
+def test_no_more_workers_are_told_than_are_started() -> None:
+    from tactile_graph.cli.many.options import side_by_side
+    from tactile_graph.many.executor_kind import place_of
+    from tactile_graph.many.processes import most_workers
+
+    assert f"with {most_workers()} workers side" in side_by_side(place_of(None, 100_000))
