@@ -6,10 +6,13 @@ import os
 import pickle
 import signal
 import sys
+import tempfile
 import threading
 import time
 from multiprocessing.connection import Connection
 from typing import Any
+
+from tactile_graph.many.processes import scratch_folder
 
 LONG = 300_000_000
 """Bytes of an answer that takes a while to send."""
@@ -65,3 +68,9 @@ class Unreadable(Exception):  # noqa: N818
 
 def unreadable() -> None:
     raise Unreadable(1, 2)
+
+
+def leaves_a_folder(seconds: float) -> None:
+    """Make a folder for what the run needs, and take long."""
+    tempfile.mkdtemp(dir=scratch_folder())
+    time.sleep(seconds)

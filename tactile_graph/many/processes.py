@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import shutil
 import signal
 import sys
+import tempfile
 import threading
 from multiprocessing.connection import Connection
 from multiprocessing.context import BaseContext
@@ -32,6 +34,19 @@ def most_workers() -> int:
     return MOST_PER_CORE * usable_cores()
 
 
+_scratch: list[str] = []
+"""The folder that this worker shares with the others of its run; of another process there is none.
+"""
+
+
+def scratch_folder() -> str | None:
+    """Return where a worker puts what its run alone needs; None if it is no worker.
+
+    Who began the workers removes it, and what workers that were killed have left in it.
+    """
+    return _scratch[0] if _scratch and os.path.isdir(_scratch[0]) else None
+
+
 def opened(address: str, n_workers: int | None) -> Opened:
     """Return so many processes, at most `most_workers`; one for each core if nobody said how many.
 
@@ -43,8 +58,14 @@ def opened(address: str, n_workers: int | None) -> Opened:
     if address:
         raise UsageError(f"--on processes={address}: processes are on this machine; no address")
     n = min(n_workers or usable_cores(), most_workers())
-    workers = WorkerProcesses(n, _context(), _begin, (selected(),))
-    return Opened(workers, n, workers.kill, (DeadWorkerError,))
+    folder = tempfile.TemporaryDirectory(prefix="tactile-graph-", ignore_cleanup_errors=True)
+    workers = WorkerProcesses(n, _context(), _begin, (selected(), folder.name))
+
+    def end() -> None:
+        workers.kill()
+        folder.cleanup()
+
+    return Opened(workers, n, end, (DeadWorkerError,))
 
 
 def _context() -> BaseContext:
@@ -54,8 +75,9 @@ def _context() -> BaseContext:
     return multiprocessing.get_context("forkserver")
 
 
-def _begin(lifeline: Connection, selection: str) -> None:
+def _begin(lifeline: Connection, selection: str, folder: str) -> None:
     """Get a worker ready: it is ended by its lifeline, not by Ctrl-C, and prints to stderr."""
+    _scratch[:] = [folder]
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
@@ -68,6 +90,8 @@ def _end_with(lifeline: Connection) -> None:
     try:
         lifeline.recv_bytes()
     except (EOFError, OSError):
+        if _scratch:  # who began this one was perhaps killed
+            shutil.rmtree(_scratch[0], ignore_errors=True)
         os._exit(1)
 
 

@@ -19,6 +19,7 @@ from tactile_graph.engine.blocks.gathering import WORTH_BLOCKS
 from tactile_graph.engine.tables.columns import columns_of
 from tactile_graph.exporter import Writer, write_block
 from tactile_graph.many.portion import Portion
+from tactile_graph.many.processes import scratch_folder
 from tactile_graph.many.reading import Reader, Reading
 from tactile_graph.many.sharing import for_the_way, ready
 from tactile_graph.steps.ranges import Irregular
@@ -157,7 +158,7 @@ class _Bench:
         """Give what takes results, and where their file is as bytes at the end."""
         job = self.job
         part: list[bytes] = []
-        with tempfile.TemporaryDirectory(prefix="tactile-graph-") as folder:
+        with tempfile.TemporaryDirectory(prefix="tactile-graph-", dir=scratch_folder()) as folder:
             form = form_of(job.ending)
             path = Path(folder, f"part.{form}")
             output = Output.of(str(path), form, job.full, job.long)

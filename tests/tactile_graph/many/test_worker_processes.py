@@ -6,11 +6,13 @@ import os
 import pickle
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from concurrent.futures import CancelledError
 from multiprocessing import get_all_start_methods, get_context
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -20,6 +22,7 @@ from helpers_workers import (
     die,
     failed,
     killed_while_it_answers,
+    leaves_a_folder,
     nothing,
     own_process,
     sealed,
@@ -133,6 +136,22 @@ def test_the_end_comes_at_once_whatever_they_are_at() -> None:
     with pytest.raises((DeadWorkerError, CancelledError)):
         at[0].result(PATIENCE_S)
     assert time.monotonic() - begun_s < PATIENCE_S
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL")
+def test_what_workers_had_when_they_were_killed_goes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    place = opened("", 1)
+    place.executor.submit(leaves_a_folder, 1000.0)
+    until_s = time.monotonic() + PATIENCE_S
+    while not list(tmp_path.glob("tactile-graph-*/*")):
+        assert time.monotonic() < until_s
+        time.sleep(0.05)
+    place.end()
+    assert not list(tmp_path.iterdir())
 
 
 ENDING = """
