@@ -53,8 +53,10 @@ QUANTITIES = Vocabulary()
 UNITS = Vocabulary()
 """How a unit is spelled in the name of a field (``cm2``) -> how people write it (``cm²``)."""
 
-_ALSO_TIMES = {("N", "cm"), ("N", "mm"), ("N", "s"), ("g", "cm"), ("g", "mm")}
-"""Units of which the first is as often multiplied by the second as divided by it."""
+_PER = {("N", "cm²"), ("g", "cm²"), ("V", "s"), ("V", "g"), ("V", "N")}
+"""Units of one letter, and what they are often divided by: such a letter may be an axis, too."""
+_ALSO_TIMES = ("N", "g")
+"""Units of one letter that are as often multiplied: ``torque_n_cm``."""
 
 
 def words_and_unit(name: str) -> tuple[str, str]:
@@ -63,13 +65,16 @@ def words_and_unit(name: str) -> tuple[str, str]:
     A unit before the unit is what there is per that: ``("pressure", "N/cm²")`` of
     ``pressure_n_cm2``, unless somebody offers both together as a unit of its own. There is none
     where both may be multiplied as well: ``torque_n_cm`` is in N cm, ``stiffness_n_cm`` in N/cm.
+    A letter may be an axis: ``centre_v_cm`` is in cm.
     """
     for n_words in (2, 1):  # vx_cm_s is in cm_s, not in s
         head, *tail = name.rsplit("_", n_words)
         if head and tail and (unit := UNITS.get("_".join(tail), "")):
             words, _, before = head.rpartition("_")
-            if words and (of := UNITS.get(before, "")):
-                per = "" if (of, unit) in _ALSO_TIMES else f"{of}/{unit}"
-                return words.replace("_", " "), per
+            of = UNITS.get(before, "") if words else ""
+            if (len(before) > 1 and of) or (of, unit) in _PER:
+                return words.replace("_", " "), f"{of}/{unit}"
+            if of in _ALSO_TIMES:
+                return words.replace("_", " "), ""
             return head.replace("_", " "), unit
     return name.replace("_", " "), ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import types
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Union, get_args, get_origin
 
@@ -72,11 +72,15 @@ class Subject:
 
     @property
     def lengths(self) -> dict[str, float]:
-        """Settings that are lengths by their name, with their defaults: they scale as points do."""
+        """Settings that are lengths by their name, with their defaults: they scale as points do.
+
+        A default of None may stand for a length, too, which the step tells by an attribute.
+        """
+        told: Mapping[str, float] = getattr(self.signature.target, "usual_cm", {})
         return {
-            s.name: float(s.default)
+            s.name: float(told.get(s.name, s.default))
             for s in self.signature.settings
-            if s.name.endswith("_cm") and isinstance(s.default, (int, float))
+            if s.name in told or (s.name.endswith("_cm") and isinstance(s.default, (int, float)))
         }
 
 

@@ -7,7 +7,7 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stdout, suppress
+from contextlib import ExitStack, contextmanager, redirect_stdout, suppress
 from types import FrameType
 from typing import Any
 
@@ -46,7 +46,7 @@ def foreign_code(name: str, label: str) -> Iterator[None]:
     with _Signals() as signals:
         told.start()
         try:
-            with redirect_stdout(sys.stderr), _stdout_to_stderr():
+            with _stdout_to_stderr():
                 yield
         except BaseException as error:
             if signals.came is None:
@@ -58,23 +58,46 @@ def foreign_code(name: str, label: str) -> Iterator[None]:
             raise signals.came
 
 
+class _Diverted:
+    """Who has stdout go to stderr just now: threads may import at once, the last puts it back."""
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+        self.n = 0
+        self.back = ExitStack()
+
+
+_DIVERTED = _Diverted()
+
+
 @contextmanager
 def _stdout_to_stderr() -> Iterator[None]:
-    """Have what is written to the descriptor of stdout, as libraries in C do, go to stderr."""
+    """Have what is printed, or written to stdout's descriptor as C does, go to stderr."""
+    with _DIVERTED.lock:
+        if not _DIVERTED.n:
+            _DIVERTED.back.enter_context(redirect_stdout(sys.stderr))
+            _divert(_DIVERTED.back)
+        _DIVERTED.n += 1
+    try:
+        yield
+    finally:
+        with _DIVERTED.lock:
+            _DIVERTED.n -= 1
+            if not _DIVERTED.n:
+                _DIVERTED.back.close()
+
+
+def _divert(back: ExitStack) -> None:
     with suppress(OSError, ValueError, AttributeError):  # there may be no stdout, or a closed one
         sys.__stdout__.flush()  # type: ignore[union-attr]
     try:
         kept = os.dup(STDOUT)
     except OSError:
-        yield
         return
-    try:
-        with suppress(OSError):  # there may be no stderr
-            os.dup2(STDERR, STDOUT)
-        yield
-    finally:
-        os.dup2(kept, STDOUT)
-        os.close(kept)
+    back.callback(os.close, kept)
+    back.callback(os.dup2, kept, STDOUT)
+    with suppress(OSError):  # there may be no stderr
+        os.dup2(STDERR, STDOUT)
 
 
 def _tell(name: str, label: str) -> None:

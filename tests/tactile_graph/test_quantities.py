@@ -56,6 +56,7 @@ def test_a_units_name_alone_is_no_field_of_it() -> None:
         ("pressure_n_cm2", ("pressure", "N/cm²")),
         ("torque_n_cm", ("torque", "")),
         ("impulse_n_s", ("impulse", "")),
+        ("centre_v_cm", ("centre v", "cm")),
         ("speed_mm_s", ("speed", "mm/s")),
         ("gain_v_g", ("gain", "V/g")),
         ("mean_load_g_cm2", ("mean load", "g/cm²")),

@@ -28,6 +28,9 @@ ENOUGH = 0.7
 """Of the readings that normal noise has above rest, the share that must be there: rounding makes
 the noise seem up to a third larger."""
 
+LARGEST_STEP = 1.0
+"""Of a converter, in any unit: where all above rest read the same, and more, they are loads."""
+
 ALIKE, APART = 1.05, 2.5
 """Times, and standard deviations beyond that, what neighbours share by chance."""
 
@@ -69,6 +72,8 @@ def _noise_plain(values: Values, known: Cells, sample: Values, rest: float, step
         beyond = int(above.searchsorted(2.0 * above[k], "right")) - n_above
         if following <= REACH * sigma or beyond > n_above * THINNER:
             continue
+        if step > LARGEST_STEP and above[0] == above[-1]:
+            return 0.0
         if is_as_many(n_above, n_free, sigma, step):
             return sigma if _is_anywhere_plain(values, known, rest, float(above[k])) else 0.0
     return 0.0
@@ -98,6 +103,8 @@ def clipped_noise(values, known, sample, rest, step):  # type: ignore[no-untyped
             within += 1
         if following <= REACH * sigma or within - k - 1 > n_above * THINNER:
             continue
+        if step > LARGEST_STEP and sample[start] == sample[n - 1]:
+            return 0.0
         if is_as_many(n_above, n_free, sigma, step):
             return sigma if is_anywhere(values, known, rest, above) else 0.0
     return 0.0
@@ -165,4 +172,5 @@ def is_anywhere(values, known, rest, reach):  # type: ignore[no-untyped-def]
 def are_few(both: int, pairs: int, n_noisy: int, n_free: int) -> bool:
     """Return whether ``both`` of so many pairs are noisy no oftener than by chance."""
     expected = pairs * (n_noisy / max(n_free, 1)) ** 2
-    return both <= ALIKE * expected + APART * math.sqrt(expected)
+    by_chance = APART * math.sqrt(expected)
+    return expected / ALIKE - by_chance <= both <= ALIKE * expected + by_chance

@@ -14,7 +14,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image, Points
 from tactile_graph_fitters.circle.principal_axes import NOT_SETTLED, OK, OUT_OF_RANGE, into_frame
 from tactile_graph_fitters.ellipse.damped_steps import damped_step
-from tactile_graph_fitters.orientation.element_pitch import element_pitch_cm
+from tactile_graph_fitters.orientation.element_pitch import THESIS_PITCH_CM, element_pitch_cm
 from tactile_graph_fitters.orientation.oriented import Oriented
 from tactile_graph_fitters.rectangle.fitted_rectangle import FittedRectangle, rectangle_of
 
@@ -90,6 +90,9 @@ def fit_rectangle(
         raise Degenerate(_why(xy, status, rounds))
     first, second = 2.0 * (first + inside_cm), 2.0 * (second + inside_cm)
     return rectangle_of(Oriented(x, y, first, second, angle), misfit, n, rounds, pitch_cm)
+
+
+fit_rectangle.usual_cm = {"cell_cm": THESIS_PITCH_CM}  # type: ignore[attr-defined]
 
 
 def _why(xy: Values, status: int, rounds: int) -> str:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image, Points
-from tactile_graph_fitters.orientation.element_pitch import element_pitch_cm
+from tactile_graph_fitters.orientation.element_pitch import THESIS_PITCH_CM, element_pitch_cm
 from tactile_graph_fitters.orientation.oriented import Oriented
 from tactile_graph_fitters.rectangle.fitted_rectangle import FittedRectangle, rectangle_of
 
@@ -74,6 +74,9 @@ def min_area_rectangle(
         raise Degenerate(f"{n} points: their rectangle is too large for a number") from None
     pitch_cm = element_pitch_cm(elements, cell_cm)
     return rectangle_of(Oriented(x, y, first, second, angle), empty, n, len(corners), pitch_cm)
+
+
+min_area_rectangle.usual_cm = {"cell_cm": THESIS_PITCH_CM}  # type: ignore[attr-defined]
 
 
 @compiled_later

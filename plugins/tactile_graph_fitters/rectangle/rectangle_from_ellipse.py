@@ -11,7 +11,7 @@ from annotated_types import Gt
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Ellipse, Image, Rectangle
 from tactile_graph_fitters.ellipse.fitted_ellipse import FittedEllipse
-from tactile_graph_fitters.orientation.element_pitch import element_pitch_cm
+from tactile_graph_fitters.orientation.element_pitch import THESIS_PITCH_CM, element_pitch_cm
 from tactile_graph_fitters.rectangle.fitted_rectangle import alike
 
 # Half axes a, b of the ellipse that `fit_ellipse_origin` fits to the evenly covered outline of a
@@ -72,7 +72,7 @@ def rectangle_from_ellipse(
     ellipse: Ellipse,
     elements: Image | None = None,
     *,
-    inside_cm: float = 0.0,
+    inside_cm: float | None = None,
     inside_cells: float = 0.0,
     cell_cm: Annotated[float | None, Gt(0)] = None,
 ) -> EllipseRectangle:
@@ -84,13 +84,13 @@ def rectangle_from_ellipse(
         From `fit_ellipse_origin`.
     elements : Image, optional
         What was read, as it was read: not subdivided.
-    inside_cm : float
+    inside_cm : float, optional
         How far inside the object's outline the fitted points lie, for the corrected sides;
         below 0 where they lie outside. Centres of boundary cells lie half a cell inside the cells'
         outline, and the cells' outline, where a covered fifth turns a cell on, as much as 0.3 cm
         (on the thesis' pad) outside the object's.
     inside_cells : float
-        The same in elements' pitches; both count.
+        The same in elements' pitches, where ``inside_cm`` is not given.
     cell_cm : float, optional
         Pitch of the elements that were read, for `ambiguous` and ``inside_cells``; that of
         ``elements`` if not given, or 1.3, the thesis' pad's.
@@ -118,7 +118,7 @@ def rectangle_from_ellipse(
         raise Degenerate(f"half axes of {a:.3g} by {b:.3g} cm enclose nothing: no rectangle")
     ratio = b / a
     cell_cm = element_pitch_cm(elements, cell_cm)
-    inside_cm = inside_cm + inside_cells * cell_cm
+    inside_cm = inside_cells * cell_cm if inside_cm is None else inside_cm
     length = 2.0 * a * float(np.interp(ratio, BIAS[:, 0], BIAS[:, 1])) + 2.0 * inside_cm
     breadth = 2.0 * b * float(np.interp(ratio, BIAS[:, 0], BIAS[:, 2])) + 2.0 * inside_cm
     if not min(length, breadth) > 0.0:
@@ -138,3 +138,6 @@ def rectangle_from_ellipse(
         *quality,
         alike(length, breadth, cell_cm),
     )
+
+
+rectangle_from_ellipse.usual_cm = {"cell_cm": THESIS_PITCH_CM}  # type: ignore[attr-defined]

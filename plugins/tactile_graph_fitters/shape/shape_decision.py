@@ -13,7 +13,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Ellipse, Image, Points, Polygon, Rectangle
 from tactile_graph_fitters.circle.fitted_circle import FittedCircle
 from tactile_graph_fitters.ellipse.fitted_ellipse import ellipse_of
-from tactile_graph_fitters.orientation.element_pitch import element_pitch_cm
+from tactile_graph_fitters.orientation.element_pitch import THESIS_PITCH_CM, element_pitch_cm
 from tactile_graph_fitters.orientation.oriented import Oriented
 from tactile_graph_fitters.rectangle.fitted_rectangle import rectangle_of
 from tactile_graph_fitters.shape.shape_confidence import (
@@ -123,6 +123,9 @@ def shape_decision(
     corners = (0, 0, 4, rows[3])[best]
     shape = _shape(fits, rows[best], cell_cm)
     return ShapeDecision(KINDS[best], share[best], shape, corners, *share)
+
+
+shape_decision.usual_cm = {"cell_cm": THESIS_PITCH_CM}  # type: ignore[attr-defined]
 
 
 def _refuse_far_apart(outline: Polygon, cell_cm: float) -> None:

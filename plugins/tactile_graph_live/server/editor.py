@@ -6,7 +6,6 @@ import asyncio
 import pickle
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -67,6 +66,7 @@ class Editor:
         self._swap, self._changed, self._wrong, self._say = swap, changed, wrong, say
         self._version = 1
         self._read_source = sense.read_source
+        self._borne: set[str] = set()
         self._watched = Watched(sense, [draft.pipeline.file])
         self.now = self._edited(replace(draft, source_files=self._watch_all_of(draft)), 1)
         self.trouble: Trouble | None = None
@@ -113,16 +113,25 @@ class Editor:
         """Watch all that is read with a file that is right; return what its source reads."""
 
         def read_source() -> None:
-            with suppress(TactileGraphError):  # the bench tells what keeps it from its frames
+            try:
                 self._read_source(draft.pipeline)
+            except TactileGraphError as error:  # the bench tells what keeps it from its frames
+                self._borne = _texts(error, draft)
 
         return self._watched.take(draft.read_again, read_source)[1]
 
     def _read(self) -> Draft:
         found: list[Draft] = []
+
+        def read_source() -> None:
+            try:
+                self._read_source(found[0].pipeline)
+            except TactileGraphError as error:  # a setting `scene` of a plugin's may be no file
+                if not _texts(error, found[0]) <= self._borne:
+                    raise
+
         _, source_files = self._watched.take(
-            lambda: found.append(self.now.draft.read_again()),
-            lambda: self._read_source(found[0].pipeline),
+            lambda: found.append(self.now.draft.read_again()), read_source
         )
         return replace(found[0], source_files=source_files)
 
@@ -213,3 +222,8 @@ class Editor:
         trouble = Trouble(self._version, errors)
         self.trouble = trouble if errors else None
         self._wrong(trouble)
+
+
+def _texts(error: TactileGraphError, draft: Draft) -> set[str]:
+    """Return what is wrong with a file, wherever it stands there."""
+    return {fault.text for fault in faults(error, draft.pipeline.file)}

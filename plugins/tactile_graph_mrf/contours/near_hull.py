@@ -38,7 +38,7 @@ def near_hull(
     within_cm : float, optional
         Farthest that a point may lie from the hull; 0.5 if neither is given.
     within_cells : float, optional
-        The same in pitches of ``elements``, instead.
+        The same in pitches of ``elements``, where ``within_cm`` is not given.
 
     Returns
     -------
@@ -48,7 +48,7 @@ def near_hull(
     Raises
     ------
     RuleError
-        If both are given, or ``within_cells`` without ``elements``.
+        If ``within_cells`` counts, and there are no ``elements``.
     """
     within_cm = _within_cm(elements, within_cm, within_cells)
     size = float(np.abs(points.xy_cm).max(initial=0.0)) or 1.0  # of any size, squares stay finite
@@ -62,14 +62,15 @@ def near_hull(
     return Points(points.xy_cm[distance <= within_cm / size])
 
 
+near_hull.usual_cm = {"within_cm": USUAL_CM}  # type: ignore[attr-defined]
+
+
 def _within_cm(
     elements: Image | None, within_cm: float | None, within_cells: float | None
 ) -> float:
     """Return the distance that was told, in cm."""
-    if within_cells is None:
+    if within_cm is not None or within_cells is None:
         return USUAL_CM if within_cm is None else within_cm
-    if within_cm is not None:
-        raise RuleError("within_cm and within_cells: give one of them, got both")
     if elements is None:
         raise RuleError("within_cells: needs the port 'elements', the image that was read")
     x_cm, y_cm = elements.pitch_cm

@@ -19,6 +19,7 @@ from typing import Any
 
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.parquet import ParquetFile, pyarrow
+from tactile_graph.engine.tables.columns import Column
 from tactile_graph.engine.tables.table import Table
 from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer
@@ -268,8 +269,14 @@ def _made_by(export: Export) -> str:
     assert export.table is not None
     resolved = export.pipeline.resolved()
     told = [resolved["nodes"], resolved["outputs"], export.asked]
-    columns = [[c.key, c.unit] for c in export.table.columns]
+    columns = [[c.key, _unit_told(c)] for c in export.table.columns]
     return hashlib.sha256(json.dumps([told, columns], default=str).encode()).hexdigest()
+
+
+def _unit_told(column: Column) -> str:
+    """Return a column's unit, of errors in long tables as their name has it: sets hang on it."""
+    long = column.error and not column.key.startswith(f"{column.output}.")
+    return column.key.rpartition("_")[2] if long else column.unit
 
 
 def _check(name: str) -> None:

@@ -216,6 +216,14 @@ def _opened(export: Export) -> Writer:
 
 def _joined(parts: Iterator[bytes], file: BinaryIO) -> None:
     """Write the rows of several files as one, in groups as large as one process makes them."""
+    if not os.path.isfile(file.name):  # stdout: what was written there cannot be corrected
+        with tempfile.TemporaryDirectory(prefix="tactile-graph-") as folder:
+            own = Path(folder, "joined")
+            with own.open("wb") as joined:
+                _joined(parts, joined)
+            with own.open("rb") as made:
+                shutil.copyfileobj(made, file)
+        return
     arrow = pyarrow()
     first = arrow.parquet.read_table(io.BytesIO(next(parts)))
     units = units_in(first.schema)

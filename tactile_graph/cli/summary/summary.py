@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.cli.summary.quantiles import Numbers
 from tactile_graph.cli.summary.reading import LEAD, Chunk, Column, Lines, as_float, is_long
-from tactile_graph.vocabulary import words_and_unit
+from tactile_graph.vocabulary import UNITS, words_and_unit
 
 LONG = ("output", "item", "outcome", "type")
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -195,7 +195,7 @@ def _unit(key: str, units: Mapping[str, str]) -> str:
     """Return the unit of a column: as its file tells, otherwise by its name."""
     field = key.rpartition(".")[2]
     told = units.get(key if key in units else field) or words_and_unit(field)[1]
-    return "" if told == "1" else told
+    return "" if told == "1" else UNITS.get(told, told)  # files of before have errors in "deg"
 
 
 def kind(word: str) -> str:

@@ -1,5 +1,7 @@
 """Freeze what steps return: arrays become read-only, lists tuples, mappings the result's own.
 
+A list within a record stays a list, as the record declares it, but is the result's own.
+
 No array is copied.
 """
 
@@ -36,7 +38,7 @@ def freeze(value: Any) -> Any:
         If the value holds itself, or is nested deeper than Python follows.
     """
     try:
-        return _frozen(value)
+        return _frozen(value, {})
     except RecursionError:
         raise TypeError(
             "what the step returned holds itself, or is nested hundreds deep; "
@@ -44,7 +46,7 @@ def freeze(value: Any) -> Any:
         ) from None
 
 
-def _frozen(value: Any) -> Any:
+def _frozen(value: Any, known: Known, inside: bool = False) -> Any:
     kind = value.__class__
     if kind in FROZEN or value is None:
         return value
@@ -54,6 +56,8 @@ def _frozen(value: Any) -> Any:
         if _only_numbers(kind):
             FROZEN.add(kind)
             return value
+    if known and names and id(value) in known:
+        return known[id(value)][1]
     changed = None
     for name in names:
         field: Any = getattr(value, name, None)
@@ -61,23 +65,30 @@ def _frozen(value: Any) -> Any:
         if kind is np.ndarray:
             field.setflags(False)  # by keyword it takes twice as long
         elif kind not in FROZEN:
-            own = _frozen(field)
+            own = _frozen(field, known, True)
             if own is not field:
                 changed = changed or {}
                 changed[name] = own
     if changed:
-        return _with(value, changed)
-    return value if names else _freeze_container(value)
+        made = _with(value, changed)
+        known[id(value)] = value, made  # the record too: or another could have its id
+        return made
+    return value if names else _freeze_container(value, known, inside)
 
 
 def _with(record: Any, changed: dict[str, Any]) -> Any:
     """Return a copy of a record, frozen or not, with other values in some of its fields."""
-    made = copy.copy(record)
-    for name, value in changed.items():
-        object.__setattr__(made, name, value)
+    try:
+        made = copy.copy(record)
+        for name, value in changed.items():
+            object.__setattr__(made, name, value)
+    except Exception:  # it lets nobody copy it, or give a field another value: it stays itself
+        return record
     return made
 
 
+Known = dict[int, tuple[Any, Any]]
+"""Records and their copies, by the `id` of the record: one that is named twice stays one."""
 _FIELDS: dict[type, tuple[str, ...]] = {}
 """The fields of each record type met so far."""
 
@@ -99,20 +110,23 @@ def _only_numbers(kind: type) -> bool:
     return all(hints[f.name] in (bool, int, float, str) for f in dataclasses.fields(kind))
 
 
-def _freeze_container(value: Any) -> Any:
+def _freeze_container(value: Any, known: Known, inside: bool) -> Any:
     if isinstance(value, np.ndarray):
         value.setflags(False)  # type: ignore[call-arg]
     elif isinstance(value, tuple):
-        items = [_frozen(v) for v in value]
+        items = [_frozen(v, known, inside) for v in value]
         if any(a is not b for a, b in zip(items, value, strict=True)):
             return type(value)(*items) if hasattr(value, "_fields") else tuple(items)
     elif isinstance(value, list):
-        return tuple(_frozen(v) for v in value)
+        items = [_frozen(v, known, inside) for v in value]
+        if not inside:
+            return tuple(items)
+        return items if value.__class__ is list else value
     elif value.__class__ is dict:  # a step may give the one it keeps, and go on filling it
-        return {key: _frozen(item) for key, item in value.items()}
+        return {key: _frozen(item, known, inside) for key, item in value.items()}
     elif value.__class__ is set:
         return value.copy()
     elif isinstance(value, dict):
         for item in value.values():
-            _frozen(item)
+            _frozen(item, known, inside)
     return value

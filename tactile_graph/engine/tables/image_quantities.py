@@ -39,21 +39,35 @@ class Told(NamedTuple):
 UNKNOWN = Told({}, {})
 
 
-def told_of(graph: Graph, ref: Ref) -> Told:
-    """Return the quantities of the value at a reference; of its items where it is a list."""
+Known = dict[tuple[int, Ref], Told]
+
+
+def told_of(graph: Graph, ref: Ref, known: Known | None = None) -> Told:
+    """Return the quantities of the value at a reference; of its items where it is a list.
+
+    ``known`` are those found before, so that each is followed once where wires meet again.
+    """
+    known = {} if known is None else known
+    place = id(graph), ref
+    if place not in known:
+        known[place] = _told_of(graph, ref, known)
+    return known[place]
+
+
+def _told_of(graph: Graph, ref: Ref, known: Known) -> Told:
     if ref.node == FRAME:
         same = {quantity: quantity for quantity in QUANTITIES}
         return Told(same, same)
     node = graph.nodes[ref.node]
     if node.choices:
-        return _of_choices(graph, node, [_further(choice, ref) for choice in node.choices])
+        return _of_choices(graph, node, [_further(choice, ref) for choice in node.choices], known)
     if node.kind is NodeKind.MAP and node.inner is not None:
-        return _of_each(graph, node, node.inner, ref)
+        return _of_each(graph, node, node.inner, ref, known)
     if node.kind is NodeKind.GIVEN:
         return UNKNOWN
     promised = node.facts.by_frame
     settled = any(promised.values()) or _is_image(_kind_at(graph, Ref(ref.node)))
-    measured = promised if settled else _read(graph, node)
+    measured = promised if settled else _read(graph, node, known)
     if ref.whole:
         return Told(promised, measured)
     if _is_measured_view(graph, ref):
@@ -62,19 +76,19 @@ def told_of(graph: Graph, ref: Ref) -> Told:
     return Told(promised if last in node.facts.views else {}, measured)
 
 
-def _read(graph: Graph, node: Node) -> ByFrame:
+def _read(graph: Graph, node: Node, known: Known) -> ByFrame:
     """Return the quantity of the images that a node reads, where all are in one."""
     refs = [r for b in node.inputs if _speaks_of_images(b.port.type) for r in b.refs]
-    found = (told_of(graph, ref) for ref in refs)
+    found = (told_of(graph, ref, known) for ref in refs)
     kinds = [_kind_at(graph, ref) for ref in refs]
     return _agreed(
         (told.of(kind) for told, kind in zip(found, kinds, strict=True)), node.facts.by_frame
     )
 
 
-def _of_choices(graph: Graph, node: Node, refs: Sequence[Ref]) -> Told:
+def _of_choices(graph: Graph, node: Node, refs: Sequence[Ref], known: Known) -> Told:
     """Return the quantities of the first of several that has a value, where all agree."""
-    told, here = [told_of(graph, ref) for ref in refs], node.facts.by_frame
+    told, here = [told_of(graph, ref, known) for ref in refs], node.facts.by_frame
     images = [
         one.image for one, ref in zip(told, refs, strict=True) if _is_image(_kind_at(graph, ref))
     ]
@@ -84,7 +98,7 @@ def _of_choices(graph: Graph, node: Node, refs: Sequence[Ref]) -> Told:
     )
 
 
-def _of_each(graph: Graph, node: Node, inner: Graph, ref: Ref) -> Told:
+def _of_each(graph: Graph, node: Node, inner: Graph, ref: Ref, known: Known) -> Told:
     """Return the quantities of what a pipeline gives that runs for each item of a list."""
     names = {name.replace(".", "_"): output for name, output in inner.outputs.items()}
     path = ref.path
@@ -93,9 +107,9 @@ def _of_each(graph: Graph, node: Node, inner: Graph, ref: Ref) -> Told:
             return UNKNOWN
         names, path = {path[0]: names[path[0]]}, path[1:]
     (output,) = names.values()
-    found = told_of(inner, _further(output, Ref(ref.node, path, ref.item_path)))
+    found = told_of(inner, _further(output, Ref(ref.node, path, ref.item_path)), known)
     frames = node.inputs[0].refs[0]
-    outer = told_of(graph, frames).of(_kind_at(graph, frames))
+    outer = told_of(graph, frames, known).of(_kind_at(graph, frames))
     image, measured = (
         {q: its.get(of, "") if of else "" for q, of in outer.items()} for its in found
     )

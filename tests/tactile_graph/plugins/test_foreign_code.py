@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import sys
+import threading
 import time
 from collections.abc import Callable
 from types import ModuleType
@@ -63,6 +65,29 @@ def test_what_a_plugin_writes_to_the_descriptor_goes_to_stderr(
     registry(load)
     print(", after")  # noqa: T201
     assert capfd.readouterr() == ("before, after\n", "SDK 2.1 loaded\n")
+
+
+def test_threads_that_import_at_once_leave_stdout_where_it_was(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """The first one to end puts nothing back that the second would take for the usual."""
+    inside, over = threading.Event(), threading.Event()
+
+    def second() -> None:
+        with foreign_code("b", "plugin"):
+            inside.set()
+            over.wait(30.0)
+
+    before = sys.stdout
+    thread = threading.Thread(target=second)
+    with foreign_code("a", "plugin"):
+        thread.start()
+        assert inside.wait(30.0)
+    over.set()
+    thread.join()
+    os.write(1, b"after\n")
+    assert sys.stdout is before
+    assert capfd.readouterr() == ("after\n", "")
 
 
 def test_a_plugin_is_imported_where_stdout_is_closed(capfd: pytest.CaptureFixture[str]) -> None:

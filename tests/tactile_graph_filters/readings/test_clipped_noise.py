@@ -78,6 +78,20 @@ def test_too_few_readings_tell_nothing() -> None:
     assert noise_of(lone) == 0.0
 
 
+@pytest.mark.parametrize("load", [2.0, 255.0, 1000.0])
+@pytest.mark.parametrize("n", [4, 8])
+def test_touches_apart_that_read_the_same_are_no_noise(load: float, n: int) -> None:
+    """A mat of switches, or pins at the end of the converter's range."""
+    rng = np.random.default_rng(8)
+    for _ in range(20):
+        pins = np.zeros((16, 16))
+        pins.flat[rng.choice(256, n, replace=False)] = load
+        assert noise_of(pins) == 0.0
+    lattice = np.zeros((32, 32))
+    lattice[::4, ::4] = load
+    assert noise_of(lattice) == 0.0
+
+
 def test_cells_that_do_not_count_say_nothing() -> None:
     values = counts(np.random.default_rng(6), 1.0)
     known = np.ones((16, 16), np.bool_)

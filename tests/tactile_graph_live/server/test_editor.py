@@ -35,6 +35,10 @@ outputs: [boundary]
 """
 
 
+ODD = FLOW.replace("{step: sample, with: {name: discs}}", "{step: simulate, with: {scene: odd-3}}")
+"""Its source may be a plugin's own, whose scenes are no files: who runs it knows."""
+
+
 class Desk:
     """An editor of a file, and a bench that answers as it is told to."""
 
@@ -77,6 +81,18 @@ class Desk:
 @pytest.fixture
 def desk(tmp_path: Path) -> Desk:
     return Desk(tmp_path / "mine.yaml")
+
+
+def test_what_was_said_of_the_source_at_the_start_keeps_no_change_from_running(
+    tmp_path: Path,
+) -> None:
+    desk = Desk(tmp_path / "f.yaml", ODD)
+    desk.save("# another line\n" + ODD.replace("0.01", "0.02"))
+    desk.play(desk.editor.reload)
+    assert desk.level_v() == 0.02
+    desk.save(ODD.replace("odd-3", "odd-4"))
+    desk.play(desk.editor.reload)
+    assert "odd-4" in desk.troubles[-1].errors[0].text
 
 
 def test_a_file_that_is_right_runs_and_counts_up(desk: Desk) -> None:

@@ -29,7 +29,7 @@ def test_how_near_can_be_told_in_pitches_of_the_elements() -> None:
     elements = Image(np.zeros((2, 2)), (0.25, 0.25))
     by_cells = near_hull(points, hull, elements, within_cells=2.0)
     np.testing.assert_array_equal(by_cells.xy_cm, near_hull(points, hull).xy_cm)
-    with pytest.raises(RuleError, match="give one of them"):
-        near_hull(points, hull, elements, within_cm=1.0, within_cells=2.0)
+    told = near_hull(points, hull, elements, within_cm=0.1, within_cells=20.0)  # cm go before
+    assert told.count == near_hull(points, hull, within_cm=0.1).count
     with pytest.raises(RuleError, match="needs the port 'elements'"):
         near_hull(points, hull, within_cells=2.0)

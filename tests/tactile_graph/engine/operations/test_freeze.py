@@ -82,8 +82,37 @@ def test_a_list_within_a_record_is_the_results_own(wrap: Any) -> None:
     got = getattr(frozen, "inner", frozen[0] if isinstance(frozen, tuple) else frozen)
     track.level.append(3.0)
     track.by_name["a"].append(3.0)
-    assert got == Track((1.0,), {"a": (2.0,)})  # type: ignore[arg-type]
+    assert got == Track([1.0], {"a": [2.0]})
     assert track.level == [1.0, 3.0]  # the step's own stays as it is
+
+
+@dataclass(eq=False)
+class Node:
+    near: list[Any]
+
+
+@dataclass
+class Net:
+    nodes: list[Node]
+    first: Node
+
+
+def test_a_record_that_is_named_twice_stays_one() -> None:
+    node = Node([1])
+    net = freeze(Net([node, Node([2])], node))
+    assert net.nodes[0] is net.first
+    assert net.nodes[0] is not node
+    assert net.nodes[0].near == [1]
+
+
+class Sealed(Node):
+    def __copy__(self) -> Any:
+        raise TypeError("not to be copied")
+
+
+def test_a_record_that_lets_nobody_copy_it_stays_itself() -> None:
+    sealed = Sealed([1])
+    assert freeze(sealed) is sealed
 
 
 def test_a_record_without_a_list_is_not_copied() -> None:

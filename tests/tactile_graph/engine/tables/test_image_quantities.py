@@ -9,6 +9,7 @@ import pytest
 
 from helpers_graphs import registry
 from tactile_graph import Degenerate, Frame, Image, load, loads
+from tactile_graph.engine.tables import image_quantities
 from tactile_graph.engine.tables.table import make_table, units_of, without_one_unit
 from tactile_graph.steps.rules import Quantity
 
@@ -66,6 +67,14 @@ def apart(one: Image, other: Image) -> Weighed:
     return weighed(one)
 
 
+def part(image: Image) -> Part:
+    return Part(float(image.total), image)
+
+
+def mixed(one: Part, other: Part) -> Part:
+    return one
+
+
 STEPS: dict[str, Callable[..., Any]] = {
     f.__name__: f for f in (grams, same, unsaid, parts, weighed, both, apart)
 }
@@ -113,6 +122,23 @@ def test_a_sum_is_in_the_unit_that_was_promised_of_its_image(
     name: str, column: str, expected: str
 ) -> None:
     assert units(name)[column] == expected
+
+
+def test_each_node_is_followed_once_where_wires_meet_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Read twice by each after it, a node would be asked for a thousand times after ten."""
+    asked, follow = [], image_quantities._told_of
+
+    def noted(graph: Any, ref: Any, known: Any) -> Any:
+        asked.append(ref)
+        return follow(graph, ref, known)
+
+    monkeypatch.setattr(image_quantities, "_told_of", noted)
+    lines = [f"n{i}: {{step: mixed, in: {{one: n{i - 1}, other: n{i - 1}}}}}" for i in range(1, 11)]
+    nodes = "\n  ".join(["n0: {step: part, in: frame}", *lines])
+    text = f"pipeline: p\nnodes:\n  {nodes}\noutputs: [n10]\n"
+    pipeline = loads(text, "p.yaml", registry({"part": part, "mixed": mixed}))
+    assert units_of(make_table(pipeline, ["n10"], False), ["volt"])["n10.total"] == "V"
+    assert len(asked) < 40
 
 
 def test_items_of_a_list_are_in_the_unit_of_the_image_they_are_parts_of() -> None:
