@@ -34,6 +34,7 @@ def summary(results: tuple[Path, ...], as_json: bool) -> None:
         prefix = f"{path}: " if len(results) > 1 else ""
         for chunk in chunks(path):
             found.add(chunk, path.name, prefix)
+    found.end()
     if as_json:
         hand_over(json.dumps(as_data(found), ensure_ascii=False) + "\n")
         return

@@ -52,6 +52,23 @@ class Numbers:
         if self._n_new > EXACT:
             self._merge()
 
+    def take(self, other: Numbers) -> None:
+        """Take in what others came to; they are used up."""
+        self.n_not_finite += other.n_not_finite
+        if not other._means.size:
+            for values in other._new:
+                self.add(values)
+            return
+        other._merge()
+        self._merge()
+        self.n += other.n
+        self.total += other.total
+        self.least, self.most = min(self.least, other.least), max(self.most, other.most)
+        self._means = np.concatenate([self._means, other._means])
+        self._weights = np.concatenate([self._weights, other._weights])
+        self._new = [np.empty(0)]
+        self._merge()
+
     def compress(self) -> None:
         """Keep a few means alone: ranks are then right within about 1 %."""
         if self.n > SMALL_SCALE:

@@ -93,6 +93,16 @@ class Group:
             told = np.abs(told)
         self.numbers.setdefault(quantity, Numbers()).add(told)
 
+    def spoken_for(self, units: Mapping[str, str]) -> None:
+        """Give the numbers of columns that no unit was told of the one that is told of others."""
+        for table in (self.numbers, self.signed):
+            for quantity in [q for q in table if not q.unit and q.key in units]:
+                numbers, other = table.pop(quantity), Quantity(quantity.key, units[quantity.key])
+                if other in table:
+                    table[other].take(numbers)
+                else:
+                    table[other] = numbers
+
     def compress(self) -> None:
         """Take little memory from now on."""
         for numbers in (*self.numbers.values(), *self.signed.values()):
@@ -141,6 +151,19 @@ class Summary:
             return
         for name, columns in _split(chunk, otherwise):
             self._rows(self._groups(prefix + name), columns, chunk.units)
+
+    def end(self) -> None:
+        """Count columns that no unit was told of with those of their name, if these have one.
+
+        JSON lines tell none of sums of readings, nor a CSV file without the file beside it.
+        """
+        told: dict[str, set[str]] = {}
+        for key, unit in self.all.numbers:
+            if unit:
+                told.setdefault(key, set()).add(unit)
+        units = {key: next(iter(its)) for key, its in told.items() if len(its) == 1}
+        for group in (self.all, *self.recordings.values()):
+            group.spoken_for(units)
 
     def _groups(self, name: str) -> tuple[Group, Group]:
         found = self.recordings.get(name)

@@ -237,6 +237,19 @@ def test_numbers_in_different_units_are_different_quantities() -> None:
     ]  # fmt: skip
 
 
+def test_a_column_that_no_unit_is_told_of_goes_with_the_others() -> None:
+    """JSON lines tell none of sums of readings, nor a CSV file without the file beside it."""
+    head = "frame,time_s,label,load.outcome,load.total\n"
+    for name, total in (("a", 1), ("b", 3)):
+        Path(f"{name}.csv").write_text(f"{head}0,0.0,,ok,{total}\n1,0.5,,ok,{total}\n")
+    Path("a.csv.meta.json").write_text(json.dumps({"columns": {"load.total": "g"}}))
+    for names in (("a.csv", "b.csv"), ("b.csv", "a.csv")):
+        told = of(*names)
+        (quantity,) = told["quantities"].values()
+        assert (quantity["unit"], quantity["n"], quantity["mean"]) == ("g", 4, 2.0)
+        assert [r["quantities"]["load.total"]["n"] for r in told["recordings"]] == [2, 2]
+
+
 def test_where_no_number_is_finite_the_ends_are_left_empty() -> None:
     line = '{"frame": 1, "outputs": {"c": {"x_cm": 1e400}, "n": %s}}\n' % 10**400
     Path("inf.jsonl").write_text(line)

@@ -47,6 +47,24 @@ def test_many_numbers_have_quantiles_near_by_rank(order: str, law: str) -> None:
     assert (found.least, found.most, found.n) == (values.min(), values.max(), values.size)
 
 
+@pytest.mark.parametrize(
+    "sizes", [(100, 300), (20_000, 300), (300, 20_000), (9000, 20_000), (0, 9)]
+)
+def test_numbers_of_two_kinds_come_to_what_they_do_together(sizes: tuple[int, int]) -> None:
+    rng = np.random.default_rng(4)
+    values = [rng.normal(2.0 * k, 1.0, n) for k, n in enumerate(sizes)]
+    found, other = of(values[0], 1000), of(values[1], 1000)
+    found.take(other)
+    found.add([np.nan])
+    both = np.sort(np.concatenate(values))
+    assert (found.n, found.n_not_finite, found.least, found.most) == (
+        both.size, 1, both[0], both[-1]
+    )  # fmt: skip
+    assert found.mean == pytest.approx(both.mean())
+    for share, value in zip(SHARES[1:-1], found.quantiles(SHARES[1:-1]), strict=True):
+        assert abs(np.searchsorted(both, value) / both.size - share) < 0.006 + 1.0 / both.size
+
+
 def test_compressed_numbers_stay_near_and_take_more() -> None:
     rng = np.random.default_rng(3)
     first, second = rng.normal(size=2000), rng.normal(3.0, size=2000)
