@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 
 from helpers_cli import call
 from tactile_graph.cli.output import data_set
-from tactile_graph.cli.output.data_set import LONGEST_NAME, folder_of, manifest_of
+from tactile_graph.cli.output.data_set import LONGEST_NAME, _unit_told, folder_of, manifest_of
+from tactile_graph.engine.tables.columns import Column
 from tactile_graph.locks import Lock
 
 HOSTILE = ("007", "a=b&c%20.txt", "größe 日本.txt", "line\nbreak.txt", "__HIVE_DEFAULT_PARTITION__",
@@ -228,3 +229,17 @@ def test_a_killed_run_leaves_whole_parts_alone_and_the_next_one_clears_up(tmp_pa
     assert subprocess.run(command, capture_output=True, check=False).returncode in (0, 1)
     assert not [*Path("results").rglob("*.part")]
     assert len([*Path("results").glob("*/*.parquet")]) == 6
+
+
+@pytest.mark.parametrize(
+    ("column", "told"),
+    [
+        (Column("angle_error_deg", "fit", "angle", "°", float, "angle"), "deg"),
+        (Column("fit.angle_error_deg", "fit", "angle", "°", float, "angle"), "°"),
+        (Column("fit.angle_rad", "fit", "angle", "rad", float), "rad"),
+    ],
+)
+def test_sets_of_earlier_versions_have_the_units_of_long_errors_by_their_names(
+    column: Column, told: str
+) -> None:
+    assert _unit_told(column) == told

@@ -135,6 +135,15 @@ def test_frames_in_several_units_leave_a_column_without_one_whichever_came_first
     assert not list(Path().glob(".*.part"))
 
 
+class Piped:
+    """A file of no name that takes bytes once."""
+
+    name = "<stdout>"
+
+    def __init__(self, file: Any) -> None:
+        self.write = file.write
+
+
 def test_parts_that_differ_in_units_are_joined_without_them() -> None:
     arrow = pytest.importorskip("pyarrow")
     pq = pytest.importorskip("pyarrow.parquet")
@@ -153,6 +162,11 @@ def test_parts_that_differ_in_units_are_joined_without_them() -> None:
     assert units_and_rows("joined.parquet") == ({"frame": "1"}, 1, 2)
     assert Path("joined.parquet").stat().st_size == n_bytes
     assert pq.read_table("joined.parquet")["load.total"].to_pylist() == [2.0, 2.0]
+    with Path("piped.parquet").open(
+        "wb"
+    ) as file:  # as stdout, which nothing can be taken back from
+        parquet.PARQUET.joined(iter(parts), Piped(file))  # type: ignore[arg-type]
+    assert Path("piped.parquet").read_bytes() == Path("joined.parquet").read_bytes()
 
 
 def test_a_whole_number_beyond_64_bits_is_refused_by_name() -> None:
