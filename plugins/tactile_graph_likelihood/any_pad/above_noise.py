@@ -15,7 +15,7 @@ from tactile_graph_filters.readings.clipped_noise import clipped_noise
 from tactile_graph_filters.readings.ordered import in_order
 from tactile_graph_likelihood.any_pad.clump import NEAR
 from tactile_graph_likelihood.any_pad.frame_noise import frame_noise, noise_of_sorted
-from tactile_graph_likelihood.any_pad.learned_pad import OfPad, Taught, taught
+from tactile_graph_likelihood.any_pad.learned_pad import Taught, taught
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.readings import LARGEST
 from tactile_graph_pads.pad import Pad, load_pad
@@ -248,7 +248,7 @@ class Showing(NamedTuple):
 Showing.provides = {Mask: "mask"}  # type: ignore[attr-defined]
 
 
-class AboveNoise(OfPad):
+class AboveNoise:
     """Return the footprint of what rises above the noise in a frame.
 
     Parameters
@@ -274,7 +274,7 @@ class AboveNoise(OfPad):
         pad: str | dict[str, Any] = "thesis",
         deviations: Annotated[float, Gt(0)] = SHOWS,
     ) -> None:
-        self._pad, self._deviations = self._told(load_pad(pad)), deviations
+        self._pad, self._deviations = load_pad(pad), deviations
 
     def __call__(self, image: Image) -> Showing:
         """Return the footprint, its level, how far it rises, and how many of it lie together.

@@ -10,7 +10,7 @@ from annotated_types import Len
 
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.contest import tops_of_each
-from tactile_graph_likelihood.any_pad.learned_pad import OfPad, Placing
+from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad, log_chances, shared_by
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, SoonSettings
 from tactile_graph_likelihood.any_pad.observed import observed
@@ -34,7 +34,7 @@ class Located(NamedTuple):
     rectangle: float
 
 
-class Locate(OfPad):
+class Locate:
     """Return the likeliest shape on a pad that need not be as it is told, and its place.
 
     Parameters
@@ -57,7 +57,7 @@ class Locate(OfPad):
         shapes: Annotated[list[Name], Len(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006
         settings: SoonSettings = ANY_PAD,
     ) -> None:
-        self._pad, self._gap_cm = self._told(settings.known_pad), settings.gap_cm
+        self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
         self._placing = Placing(self._pad)
         self._every: dict[str, AnyPad] = {
             name: AnyPad.of(settings, KINDS[name]) for name in dict.fromkeys(shapes)

@@ -103,18 +103,6 @@ def known_quantities(pad: Pad) -> tuple[str, ...]:
     return tuple(dict.fromkeys(known))
 
 
-class OfPad:
-    """A step that is told a pad, and takes images that the pad says something of."""
-
-    takes_by, takes_hint = "pad", PAD_HINT
-
-    def _told(self, pad: Pad) -> Pad:
-        """Take note of a pad and return it."""
-        known = known_quantities(pad)
-        self.takes = {"image": known} if known else {}
-        return pad
-
-
 def _of_elements(learned: Learned, quantity: str) -> Taught:
     offset, noise, good, stuck = learned.at_rest
     load = "gram" if quantity in LAWFUL else quantity

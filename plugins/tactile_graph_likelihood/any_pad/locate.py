@@ -6,7 +6,7 @@ from typing import Annotated
 
 from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
-from tactile_graph_likelihood.any_pad.learned_pad import OfPad, Placing
+from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
@@ -27,7 +27,7 @@ SoonSettings = Annotated[LocateSettings, Spread(*_SAID, "quick")]
 """What may be said of one outline on any pad, and how soon it is wanted."""
 
 
-class LocateOne(OfPad):
+class LocateOne:
     """What the three have in common.
 
     Parameters
@@ -39,7 +39,7 @@ class LocateOne(OfPad):
     _kind = DISC
 
     def __init__(self, settings: SoonSettings = ANY_PAD) -> None:
-        self._pad, self._gap_cm = self._told(settings.known_pad), settings.gap_cm
+        self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
         self._any_pad = AnyPad.of(settings, self._kind)
         self._placing = Placing(self._pad)
 

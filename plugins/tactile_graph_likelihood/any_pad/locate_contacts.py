@@ -12,7 +12,6 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import Contact
 from tactile_graph_likelihood.any_pad.choose import Locate, Name
-from tactile_graph_likelihood.any_pad.learned_pad import OfPad
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, AnyPadSettings
 from tactile_graph_likelihood.single.likely import Likely
 from tactile_graph_likelihood.single.readings import Readings
@@ -26,7 +25,7 @@ class LocatedContacts(NamedTuple):
     count: int  # type: ignore[assignment]  # hides tuple.count, which nobody asks a record for
 
 
-class LocateContacts(OfPad):
+class LocateContacts:
     """Return an outline for each contact of a footprint, on a pad that need not be as it is told.
 
     Parameters
@@ -50,7 +49,6 @@ class LocateContacts(OfPad):
         settings: AnyPadSettings = ANY_PAD,
     ) -> None:
         self._locate = Locate(shapes=shapes, settings=settings)
-        self._told(settings.known_pad)
 
     def __call__(self, image: Image, contacts: Sequence[Contact]) -> LocatedContacts:
         """Return the outlines.
