@@ -36,6 +36,15 @@ nodes:
 outputs: [circle]
 """
 PATIENCE_S = 30.0
+FLOW = """\
+pipeline: mine
+source: {step: sample, with: {name: discs}}
+nodes:
+  smooth: {step: low_pass, in: frame}   # as it comes
+  footprint: {step: threshold, in: smooth, with: {level_v: 0.01}}
+  boundary: {step: boundary_scan, in: footprint}
+outputs: [boundary]
+"""
 
 
 class Command:

@@ -11,7 +11,7 @@ import yaml
 
 from tactile_graph.errors import TactileGraphError, UsageError
 from tactile_graph.pipeline.load import beside, is_file, parse_graph
-from tactile_graph.pipeline.yaml_numbers import in_yaml
+from tactile_graph.pipeline.yaml_numbers import on_one_line
 from tactile_graph.plugins.registry import Registry
 
 _PROPERTIES = re.compile(r"(?:[&!]\S*\s+)*")
@@ -49,7 +49,7 @@ def moved(text: str, file: str | Path, target: str | Path, registry: Registry | 
         end -= len(old) - len(old.rstrip())  # a block's mark stands where the next thing begins
         before = _PROPERTIES.match(old)
         assert before is not None
-        text = text[: start + before.end()] + _spelled(name) + text[end:]
+        text = text[: start + before.end()] + on_one_line(name) + text[end:]
     try:
         parse_graph(text, str(target), registry)
     except TactileGraphError as error:
@@ -95,9 +95,3 @@ def _names(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
 def _entries(mapping: yaml.Node | None) -> Iterator[tuple[str, yaml.Node]]:
     if isinstance(mapping, yaml.MappingNode):
         yield from ((str(key.value), value) for key, value in mapping.value)
-
-
-def _spelled(name: str) -> str:
-    """Return a text as YAML that may stand anywhere, in a list too."""
-    listed = in_yaml([name], default_flow_style=True, width=10**9, allow_unicode=True)
-    return listed.strip()[1:-1]

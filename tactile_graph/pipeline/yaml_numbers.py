@@ -69,6 +69,15 @@ def in_yaml(value: Any, **options: Any) -> str:
     return str(yaml.dump(value, Dumper=_Dumper, **options))
 
 
+def on_one_line(value: Any) -> str:
+    """Return plain data as YAML on one line, as it may stand within a list or mapping, too."""
+    asked: dict[str, Any] = {"default_flow_style": True, "width": 10**9, "allow_unicode": True}
+    text = in_yaml([value], **asked)
+    if "\n" in text.strip():  # within quotes of the other kind
+        text = in_yaml([value], default_style='"', **asked)
+    return text.strip()[1:-1]
+
+
 def is_plain(text: str) -> bool:
     """Return whether a text is to YAML what it is: 2024-03-01 is a date, and *.npy no text."""
     return in_yaml(text, width=10**9, allow_unicode=True).removesuffix("\n...\n") == text

@@ -289,7 +289,8 @@ def _likeliest_kind(
         if (logs[j] < most - HOPEFUL) if anew else (j == its):
             continue
         log = settled_as(rest, may_be, j, begun if anew else own, anew, point)
-        logs[j] = max(log, logs[j]) if anew else log
+        if not anew:
+            logs[j] = log
         if log > most:
             best, most = j, log
             for m in range(WIDTH):

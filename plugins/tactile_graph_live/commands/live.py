@@ -179,7 +179,7 @@ def _opened(name: str | None, recordings: Sequence[str], asked: _Options) -> Pip
 
 def _captured(recordings: Sequence[str], asked: _Options) -> tuple[str, tuple[str, ...]]:
     """Return the source step of a pad on this machine, and its settings as the command has them."""
-    from tactile_graph_live.server.yaml_settings import spelled
+    from tactile_graph.pipeline.document import on_one_line
     from tactile_graph_sources.commands.captured import captured
 
     if asked.source or recordings:
@@ -187,7 +187,7 @@ def _captured(recordings: Sequence[str], asked: _Options) -> tuple[str, tuple[st
         raise UsageError(f"give --port and --preset, or {other}, and not both")
     told = {"preset": asked.preset, "baud": asked.baud}
     step, given = captured(asked.port, asked.device, told, None)
-    return step, (*(f"{k}={spelled(v)}" for k, v in given.items()), *asked.source_settings)
+    return step, (*(f"{k}={on_one_line(v)}" for k, v in given.items()), *asked.source_settings)
 
 
 def _setup(opened: Pipeline, asked: _Options) -> Setup:

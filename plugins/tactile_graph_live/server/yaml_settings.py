@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import yaml
 
 from tactile_graph.errors import UsageError, one_of
-from tactile_graph.pipeline.document import in_yaml, read_document
+from tactile_graph.pipeline.document import on_one_line, read_document
 
 Settings = Mapping[str, Mapping[str, Any]]
 """Node -> setting -> value."""
@@ -41,7 +41,7 @@ def text_with(text: str, settings: Settings) -> str:
             declared, _, within = node.partition("/")
             for setting, value in values.items():
                 name = f"{within}.{setting}" if within else setting
-                changed = _with_one(changed, declared, name, spelled(value))
+                changed = _with_one(changed, declared, name, on_one_line(value))
                 _enter(wanted, declared, name, value)
         right = changed == text or _holds(changed, wanted)
     except yaml.YAMLError:
@@ -54,14 +54,6 @@ def text_with(text: str, settings: Settings) -> str:
         f"{', '.join(names)}: cannot be written into the file's YAML as it is spelled; spell there "
         f"{one_of(nodes)} like this: {{step: …, in: …, with: {{setting: value}}}}"
     )
-
-
-def spelled(value: Any) -> str:
-    """Return a value as YAML on one line, as it may stand between commas, too."""
-    text = in_yaml([value], default_flow_style=True, **ON_ONE_LINE)
-    if "\n" in text.strip():  # within quotes of the other kind
-        text = in_yaml([value], default_flow_style=True, default_style='"', **ON_ONE_LINE)
-    return text.strip()[1:-1]
 
 
 # -- whether it came out right -------------------------------------------------------------------

@@ -7,18 +7,10 @@ from pathlib import Path
 import pytest
 
 import tactile_graph as tg
+from helpers_live import FLOW
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph_live.server.draft import Draft, faults, save
 
-FLOW = """\
-pipeline: mine
-source: {step: sample, with: {name: discs}}
-nodes:
-  smooth: {step: low_pass, in: frame}   # as it comes
-  footprint: {step: threshold, in: smooth, with: {level_v: 0.01}}
-  boundary: {step: boundary_scan, in: footprint}
-outputs: [boundary]
-"""
 NESTED = """\
 pipeline: nested
 source: {step: sample, with: {name: discs}}

@@ -9,19 +9,12 @@ import pytest
 import yaml
 
 import tactile_graph as tg
+from helpers_live import FLOW
 from tactile_graph.errors import UsageError
+from tactile_graph.pipeline.document import on_one_line
 from tactile_graph_live.server import yaml_settings
-from tactile_graph_live.server.yaml_settings import spelled, text_with
+from tactile_graph_live.server.yaml_settings import text_with
 
-FLOW = """\
-pipeline: mine
-source: {step: sample, with: {name: discs}}
-nodes:
-  smooth: {step: low_pass, in: frame}   # as it comes
-  footprint: {step: threshold, in: smooth, with: {level_v: 0.01}}
-  boundary: {step: boundary_scan, in: footprint}
-outputs: [boundary]
-"""
 BLOCK = """\
 pipeline: mine
 source: {step: sample, with: {name: discs}}
@@ -59,7 +52,7 @@ def test_a_setting_that_is_not_there_is_added_and_comments_stay(text: str) -> No
     name = node.signature.settings[0].name
     value = node.settings[name]
     changed = text_with(text, {"smooth": {name: value}})
-    assert f"with: {{{name}: {spelled(value)}}}" in changed
+    assert f"with: {{{name}: {on_one_line(value)}}}" in changed
     assert "# why it is smoothed" in changed or "# as it comes" in changed
     assert tg.loads(changed).key == tg.loads(text).key
 
@@ -74,8 +67,8 @@ def test_a_second_setting_is_added_to_those_that_are_there() -> None:
 
 def test_values_are_spelled_so_that_yaml_reads_them_back() -> None:
     for value in (0.5, 1e-7, True, None, "yes", "a: b", [1, 2], {"a": 1}, "µ", "1"):
-        assert yaml.safe_load(spelled(value)) == value
-        assert "\n" not in spelled(value)
+        assert yaml.safe_load(on_one_line(value)) == value
+        assert "\n" not in on_one_line(value)
 
 
 HEAD = "pipeline: p\nsource: {step: sample, with: {name: discs}}\noutputs: [a, b]\nnodes:\n"
