@@ -13,7 +13,7 @@ from tactile_graph_likelihood.any_pad.contest import tops_of_each
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad, log_chances, shared_by
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, SoonSettings
-from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.any_pad.observed import NearlySquare, observed
 from tactile_graph_likelihood.single.any_pressure import shares_by
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
@@ -63,7 +63,7 @@ class Locate:
             name: AnyPad.of(settings, KINDS[name]) for name in dict.fromkeys(shapes)
         }
 
-    def __call__(self, image: Image) -> Located:
+    def __call__(self, image: NearlySquare) -> Located:
         """Return the choice.
 
         Parameters

@@ -8,7 +8,7 @@ from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad
-from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.any_pad.observed import NearlySquare, observed
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single.likely import (
@@ -75,7 +75,7 @@ class LocateDisc(LocateOne):
     ) -> None:
         super().__init__(settings)
 
-    def __call__(self, image: Image) -> LikelyCircle:
+    def __call__(self, image: NearlySquare) -> LikelyCircle:
         """Return the disc.
 
         Parameters
@@ -101,7 +101,7 @@ class LocateRectangle(LocateOne):
 
     _kind = RECTANGLE
 
-    def __call__(self, image: Image) -> LikelyRectangle:
+    def __call__(self, image: NearlySquare) -> LikelyRectangle:
         """Return the rectangle; parameters and errors as for a disc."""
         found = likely(self.posterior(image))
         assert isinstance(found, LikelyRectangle)
@@ -113,7 +113,7 @@ class LocateEllipse(LocateOne):
 
     _kind = ELLIPSE
 
-    def __call__(self, image: Image) -> LikelyEllipse:
+    def __call__(self, image: NearlySquare) -> LikelyEllipse:
         """Return the ellipse; parameters and errors as for a disc."""
         found = likely(self.posterior(image))
         assert isinstance(found, LikelyEllipse)

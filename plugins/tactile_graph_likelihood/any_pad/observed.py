@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.errors import Degenerate, RuleError
+from tactile_graph.errors import Degenerate
+from tactile_graph.steps.rules import Grid, require_square
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.above_noise import EVERY, risen
 from tactile_graph_likelihood.any_pad.learned_pad import LAWFUL
@@ -30,8 +32,8 @@ NEARLY = 0.03
 """Of a cell's longer side, by which the other may be shorter: sizes come out wrong by half of
 that."""
 
-ROUNDING = 1e-9
-"""Of a side, by which numbers may have been rounded."""
+NearlySquare = Annotated[Image, Grid(square_to=NEARLY)]
+"""An image in any quantity that rises with load."""
 
 UNIFORM = np.array([OFF, ON, UNKNOWN, OFF, ON], np.uint8)
 """What states come to where all elements show from the same load: `UNDER` and `OVER` are none."""
@@ -72,10 +74,7 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
         If nothing shows.
     """
     across, down = image.pitch_cm
-    if abs(across - down) > (NEARLY + ROUNDING) * max(across, down):
-        raise RuleError(
-            f"needs cells that are square to {NEARLY:.0%}, got a pitch of {across:g} by {down:g} cm"
-        )
+    require_square(image, NEARLY)
     if gap_cm is None:
         gap_cm = pad.geometry.gap_cm if abs(across - pad.geometry.pitch_cm) < SAME * across else 0.0
     grid = grid_of(image, gap_cm)
