@@ -287,7 +287,7 @@ class AboveNoise:
         Raises
         ------
         RuleError
-            If a pad was learned, of another shape or quantity.
+            If a pad was learned, of another shape, pitch or quantity.
         ValueError
             If a valid cell is not finite or beyond 1e100.
         """

@@ -86,8 +86,8 @@ class LocateDisc(LocateOne):
         Raises
         ------
         RuleError
-            If the image's cells are not nearly square, or a pad was learned, of another shape
-            or quantity.
+            If the image's cells are not nearly square, or a pad was learned, of another shape,
+            pitch or quantity.
         Degenerate
             If nothing rises above the noise, or no disc on the pad explains what does.
         """

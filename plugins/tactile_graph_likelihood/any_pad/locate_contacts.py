@@ -63,8 +63,8 @@ class LocateContacts:
         Raises
         ------
         RuleError
-            If the image's cells are not nearly square, or a pad was learned, of another shape
-            or quantity.
+            If the image's cells are not nearly square, or a pad was learned, of another shape,
+            pitch or quantity.
         Degenerate
             If nothing rises above the noise.
         """

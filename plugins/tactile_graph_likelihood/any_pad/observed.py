@@ -67,7 +67,7 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     ------
     RuleError
         If the cells are not nearly square, the gap leaves no element, or the pad was learned, of
-        another shape or quantity.
+        another shape, pitch or quantity.
     DataError
         If a valid cell is not finite or beyond 1e100.
     Degenerate

@@ -99,6 +99,15 @@ def test_images_of_another_shape_or_quantity_are_refused(pad):
     assert taught(load_pad("thesis"), raw) is None
 
 
+def test_an_image_that_states_another_pitch_is_refused_and_one_that_states_none_is_not(pad):
+    known = load_pad(pad)
+    finer = Image(np.zeros((16, 16)), (0.5, 0.5), (0.0, 0.0), "volt")
+    with pytest.raises(RuleError, match=r"learned at a pitch of 1.3 x 1.3 cm, got 0.5 x 0.5 cm"):
+        taught(known, finer)
+    assert taught(known, Image(np.zeros((16, 16)), (1.3001, 1.3), (0.0, 0.0), "volt")) is not None
+    assert taught(known, Image(np.zeros((16, 16)), quantity="volt")) is not None
+
+
 def test_a_pad_with_a_learned_curve_knows_its_grams(tmp_path, bench):
     more = {"reading": "raw", "curve": [[0.0, 0.0], [5.0, 900.0]]}
     pad = load_pad(written(tmp_path, bench, **more))
