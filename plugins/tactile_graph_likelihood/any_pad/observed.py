@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid, require_square
 from tactile_graph.wires import Image
+from tactile_graph_filters.readings.dead_below import without_dead
 from tactile_graph_likelihood.any_pad.above_noise import EVERY, risen
 from tactile_graph_likelihood.any_pad.learned_pad import LAWFUL
 from tactile_graph_likelihood.any_pad.shown import (
@@ -50,7 +51,8 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     image : Image
         Volts are freed of the pad's circuit, unless most of them cannot be its, and conductances
         turned into loads by its law; any other quantity is taken to rise with load from the
-        frame's own zero. Invalid cells say nothing.
+        frame's own zero. Invalid cells say nothing, nor do those that are dead far below the
+        others (`dead_below`).
     pad : Pad
         What it has learned of its elements from recordings is applied, see `taught`.
     gap_cm : float, optional
@@ -78,6 +80,8 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     if gap_cm is None:
         gap_cm = pad.geometry.gap_cm if abs(across - pad.geometry.pitch_cm) < SAME * across else 0.0
     grid = grid_of(image, gap_cm)
+    if pad.learned is None:
+        image = without_dead(image)
     above, least, shows, _, its = risen(image, pad)
     if not above.size:
         raise Degenerate("the image has no element: no outline fits")
