@@ -229,6 +229,7 @@ def test_nothing_is_dead_or_stuck_on_a_vendors_insoles() -> None:
         assert sensor["quantity"] == "kilopascal"
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("nothing_tried")
 @pytest.mark.parametrize("n", [64, 110])
 def test_cells_dead_far_below_how_the_others_rest_hide_neither_noise_nor_offset(
