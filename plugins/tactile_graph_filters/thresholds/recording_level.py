@@ -15,7 +15,6 @@ from tactile_graph.steps.settings import spelled, validate_settings
 from tactile_graph.wires import Frame, Image
 from tactile_graph_filters.thresholds.noise_level import level_above, lower_readings
 
-
 TOGETHER = 256
 """Cells in which noise that is cut off shows: of smaller pads, frames are looked at together."""
 
