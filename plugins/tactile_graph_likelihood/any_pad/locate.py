@@ -6,9 +6,10 @@ from typing import Annotated
 
 from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.first_fit import first_fit
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad
-from tactile_graph_likelihood.any_pad.observed import NearlySquare, observed
+from tactile_graph_likelihood.any_pad.observed import NearlySquare
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single.likely import (
@@ -45,9 +46,7 @@ class LocateOne:
 
     def posterior(self, image: Image) -> Posterior:
         """Return the outline's posterior; parameters and errors as of a call."""
-        readings = observed(image, self._pad, self._gap_cm)
-        fits = self._any_pad.suited(readings)
-        readings, even = fits.first(readings)
+        fits, readings, even = first_fit(image, self._pad, self._gap_cm, self._any_pad)
         found = fits.around(readings, fits.completed(readings, even))
         return self._placing(image, [found])[0]
 

@@ -43,7 +43,9 @@ MISFIT = 1e-3
 """Relative misfit of a circuit's inverse from which on volts are not that circuit's."""
 
 
-def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
+def observed(
+    image: Image, pad: Pad, gap_cm: float | None = None, *, evened: bool = True
+) -> Readings:
     """Return what an image shows, whatever its quantity.
 
     Parameters
@@ -58,6 +60,8 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     gap_cm : float, optional
         Distance of neighbouring elements' edges, less than the pitch; the pad's if not given, none
         where the image's pitch is not the pad's.
+    evened : bool
+        Whether loads are divided by gains that the pad has learned.
 
     Returns
     -------
@@ -90,7 +94,8 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
         known = _both(known, image.valid)
     if its is not None:
         known = _both(known, its.good)
-        loads, least_loads = loads / its.gain, least_loads / its.gain
+        if evened:
+            loads, least_loads = loads / its.gain, least_loads / its.gain
     seen, floor = shown_loads.direct(loads, least_loads, shows, known)
     if not seen.size:
         raise Degenerate("no reading rises above the noise: no outline fits")
