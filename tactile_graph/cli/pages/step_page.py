@@ -102,6 +102,8 @@ def _grid(grid: Grid) -> str:
         parts.append(f"pitch {grid.pitch_cm:g} cm")
     if grid.min_rows > 1 or grid.min_columns > 1:
         parts.append(f"at least {grid.min_rows} x {grid.min_columns} cells")
+    if grid.square_to is not None:
+        parts.append(f"cells square to {grid.square_to:.0%}" if grid.square_to else "square cells")
     return ", ".join(parts)
 
 
