@@ -15,6 +15,7 @@ from tactile_graph.wires import Circle, TrueObject
 from tactile_graph_sources.commands.convert import convert
 from tactile_graph_sources.recording import recording
 from tactile_graph_sources.writers.write_npz import write_npz
+from tactile_graph_sources.writers.write_store import StoreWriter
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
 
@@ -65,6 +66,21 @@ def test_a_table_and_back_with_what_it_cannot_say_told(tmp_path: Path, made: lis
     for a, b in zip(made, read, strict=True):
         np.testing.assert_array_equal(a.image.values, b.image.values)
         assert a.image.pitch_cm == b.image.pitch_cm
+
+
+def test_a_store_that_a_full_disc_cuts_short_is_none(
+    tmp_path: Path, made: list[Frame], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Or half a recording would pass for all of it, and its name be taken."""
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(StoreWriter, "_write", full)
+    args = [str(tmp_path / name) for name in ("a.npz", "b.zarr")]
+    result = CliRunner().invoke(cli, ["convert", *args])
+    assert "b.zarr: cannot be written: No space left on device" in result.stderr
+    assert not (tmp_path / "b.zarr").exists()
 
 
 @pytest.mark.parametrize(
