@@ -128,7 +128,7 @@ class DataSet:
             return
         with said(self._root):
             if not self._lock.take():
-                raise UsageError(f"-o {self._root}: another run is writing into it, or another program has locked it")
+                raise UsageError(f"-o {self._root}: another run is writing into it")
             # Of a run that was killed.
             for lost in (f"{KEY}=*/.part-*.part", f".{MANIFEST}.*.part"):
                 for left in self._root.glob(lost):
