@@ -342,6 +342,7 @@ def test_a_file_that_ends_too_early_is_no_ctrl_d(monkeypatch):
 @pytest.mark.usefixtures("hand_made")
 def test_explain_shows_values_and_times_of_what_ran():
     got = call("explain", "discs", "--frame", 2)
+    assert "\ntimes are of a first frame: what is made, read or compiled once is in" in got.stdout
     assert got.exit_code == 0
     assert "discs, frame 2 of made: 4 x 6 volt, total 4" in got.stdout
     rows = {line.split()[0]: line for line in got.stdout.splitlines() if line.strip()}
