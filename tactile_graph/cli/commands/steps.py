@@ -87,7 +87,7 @@ def _list(found: registry.Registry) -> RenderableType:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("step", no_wrap=True)
     table.add_column("takes → gives", overflow="fold")
-    table.add_column("what")
+    table.add_column("what", overflow="fold")
     for plugin in sorted(found.plugins, key=lambda p: p.name):
         names = sorted(plugin.offers.get("steps", {}))
         if names:
@@ -130,8 +130,8 @@ def _hit_table(hits: Sequence[Hit]) -> RenderableType:
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("step", style="bold", no_wrap=True)
-    table.add_column("what")
-    table.add_column("settings about it", style="cyan")
+    table.add_column("what", overflow="fold")
+    table.add_column("settings about it", style="cyan", overflow="fold")
     for hit in hits:
         what = Text(_what(hit.entry.about))
         table.add_row(Text(hit.entry.name), what, Text(", ".join(hit.parts)))

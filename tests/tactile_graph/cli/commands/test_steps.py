@@ -57,6 +57,14 @@ def test_on_a_narrow_screen_what_belongs_to_a_step_stands_under_its_name_whole(w
 
 
 @pytest.mark.usefixtures("hand_made")
+def test_on_a_narrow_screen_no_word_is_cut():
+    for args in (["steps", "pressed"], ["steps", "disc", "-s"], ["explain", "discs"]):
+        got = CliRunner(env={"COLUMNS": "40"}).invoke(cli, args)
+        assert got.exit_code == 0
+        assert "…" not in got.stdout
+
+
+@pytest.mark.usefixtures("hand_made")
 def test_a_page_shows_ports_settings_with_ranges_and_meanings_output_and_use():
     got = call("steps", "pressed")
     assert got.exit_code == 0
