@@ -73,7 +73,7 @@ def _table(title: str, heads: tuple[str, ...], rows: list[Row]) -> Iterator[Rend
     kept = [i for i in range(len(heads)) if any(row[i] for row in rows)]
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_header=any(heads[i] for i in kept))
     for i in kept:
-        table.add_column(heads[i], style="cyan" if i == 0 else "", no_wrap=i == 0)
+        table.add_column(heads[i], style="cyan" if i == 0 else "", no_wrap=i == 0, overflow="fold")
     for row in rows:
         table.add_row(*(Text(row[i]) for i in kept))
     yield Padding(table, (0, 0, 0, 2))

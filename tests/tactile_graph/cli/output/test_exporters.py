@@ -110,4 +110,4 @@ def test_that_a_plugin_is_down_is_said_where_its_ending_is_missing(
     (hand_made / "p.yaml").write_text(TEXT)
     got = call("run", "p.yaml", *args)
     assert got.exit_code == 2
-    assert "(plugins failed to load: words)" in got.stderr
+    assert "(plugins failed to load: words; " in got.stderr
