@@ -9,8 +9,9 @@ from tactile_graph.wires import Image
 
 FEWEST = 2
 """One such cell changes nothing that is told by many."""
-MOST_SHARE = 0.5
-"""Of the cells; where so many read the same, they are those that nothing touches."""
+MOST_SHARE = 0.3
+"""Of the cells; where so many read the same, they are those that nothing touches, beside something
+large that presses evenly: one frame cannot tell the two apart."""
 APART = 2.0
 """Widths of the lower half of all other readings, by which all lie above."""
 
@@ -29,7 +30,7 @@ def dead_below(image: Image) -> NDArray[np.bool_] | None:
 
     Notes
     -----
-    Some cells, fewer than half, read exactly the same least value; of the others the lower half,
+    Some cells, fewer than three in ten, read exactly the same least value; of the others the lower half,
     taken to be untouched, lies closely together but not all at one value, and all of it far above.
     What bears a load beside cells that rest at that value has edges that are partly covered, and
     reads unevenly: its lower half is as wide as it is high.
