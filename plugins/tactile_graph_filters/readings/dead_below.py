@@ -30,8 +30,9 @@ def dead_below(image: Image) -> NDArray[np.bool_] | None:
 
     Notes
     -----
-    Some cells, fewer than three in ten, read exactly the same least value; of the others the lower half,
-    taken to be untouched, lies closely together but not all at one value, and all of it far above.
+    Some cells, fewer than three in ten, read exactly the same least value; of the others the lower
+    half, taken to be untouched, lies closely together but not all at one value, and all of it far
+    above.
     What bears a load beside cells that rest at that value has edges that are partly covered, and
     reads unevenly: its lower half is as wide as it is high.
     """

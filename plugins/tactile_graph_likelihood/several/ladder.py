@@ -118,7 +118,10 @@ class Ladder(Scene):
                 continue
             beside, rest = self.beside_sketches(points, k)
             before = self.sketched(points[k : k + 1].copy(), beside, SKETCHED - 1)
-            for worth, pair in self.halves_of(mask, beside):
+            key = mask.tobytes()
+            if key not in self.halves:
+                self.halves[key] = self.parted(mask, beside, 1)
+            for worth, pair in self.halves[key]:
                 found.append((worth - before, np.concatenate([rest, pair])))
         return self.likeliest_of(found)
 
@@ -187,16 +190,6 @@ class Ladder(Scene):
             if log > -math.inf
         ]
         return sorted(pairs, key=lambda it: -it[0])
-
-    def halves_of(self, mask: Mask, beside: JointProblem) -> list[tuple[float, Values]]:
-        """Return the best pair of sketches for a mask, and its worth beside what lay there first.
-
-        They settle beside whatever lies there later, so that a mask is parted once.
-        """
-        key = mask.tobytes()
-        if key not in self.halves:
-            self.halves[key] = self.parted(mask, beside, 1)
-        return self.halves[key]
 
     def sketch_of(self, mask: Mask) -> Values:
         """Return the sketch with a mask's moments, shape (1, 6)."""

@@ -45,9 +45,9 @@ SURPLUS = 4.0
 """What may be left unexplained beyond what is usual, in nats, for outlines not to be looked for in
 any other way."""
 
-SPLIT, RECUT, THIRD = 8.0, 9.0, 11.0
+SPLIT, RECUT = 8.0, 9.0
 """What may be left unexplained, in nats, for an outline not to be parted, for two not to be parted
-anew, and for them not to be three."""
+anew."""
 
 NEAR = 10.0
 """How much less log probability than the likeliest sketches others may have to be drawn."""
@@ -196,7 +196,7 @@ class Search(Ladder):
         for worth, pair in pairs:
             if worth > max(least, pairs[0][0] - WORSE):
                 yield self.drawn(pair, beside, before)
-        if len(out) > 1 and more and unexplained > THIRD:
+        if len(out) > 1 and more:
             for worth, three in self.threes([pair for _, pair in pairs[:PARTED]], mask, beside):
                 if worth > before - THREE:
                     yield self.drawn(three, beside, before)
@@ -214,7 +214,7 @@ class Search(Ladder):
             for k in range(2):
                 other = pair[1 - k : 2 - k]
                 beside_it = laid_on(beside, other)
-                for _, two in self.halves_of(mask & (own == k), beside_it):
+                for _, two in self.parted(mask & (own == k), beside_it, 1):
                     three = np.concatenate([two, other])
                     found.append((self.sketched(three, beside, SKETCHED - 1), three))
         return sorted(found, key=lambda it: -it[0])[:THREES]
