@@ -119,7 +119,8 @@ class Runner(Generic[ResultT]):
         self._last: tuple[bytes, ResultT] | None = None
         self._shape: tuple[int, ...] = ()
         self._quantity = ""
-        # Rules about numbers (shape, pitch) are rare: where there are any, every frame is checked.
+        self._pitch_cm = (0.0, 0.0)
+        # Where there are rules about numbers, a frame of another pitch is checked, too.
         self._rules = any(r.quantity is None for r in self.plan.rules)
         _make_room(self.plan.depth)
 
@@ -215,7 +216,11 @@ class Runner(Generic[ResultT]):
                 f"a runner takes frames, got {type(frame).__name__}; Frame.of(values) makes one"
             ) from None
         values = image.values
-        if values.shape != self._shape or image.quantity != self._quantity or self._rules:
+        if (
+            values.shape != self._shape
+            or image.quantity != self._quantity
+            or (self._rules and image.pitch_cm != self._pitch_cm)
+        ):
             self._check(image)
         if self._repeatable:
             content = values.tobytes()
@@ -248,6 +253,7 @@ class Runner(Generic[ResultT]):
     def _check(self, image: Image) -> None:
         check_frame(image, self.plan)
         self._shape, self._quantity = image.values.shape, image.quantity
+        self._pitch_cm = image.pitch_cm
 
     def _settle(self, state: list[Any], operations: list[Operation]) -> None:
         context = self._context
@@ -279,7 +285,11 @@ class Runner(Generic[ResultT]):
         """
         images = frames.images
         n = len(frames)
-        if images.shape[1:] != self._shape or images.quantity != self._quantity or self._rules:
+        if (
+            images.shape[1:] != self._shape
+            or images.quantity != self._quantity
+            or (self._rules and images.pitch_cm != self._pitch_cm)
+        ):
             self._check(images[0])
         last = self._last
         of, before = np.arange(n), None
