@@ -18,7 +18,7 @@ from tactile_graph_filters.morphology.erosion import make_plan, sweep
 from tactile_graph_filters.nan import finite, refuse_nan
 
 NOISES = 10.0
-"""From so many standard deviations of the empty pad's noise on a cell is touched, as by `contacts`."""
+"""From so many standard deviations of the empty pad's noise on a cell is touched."""
 STEPS = 2.0
 """And no lower than from so many of the least steps that readings of the empty pad differ by."""
 TINY = float(np.finfo(np.float64).tiny)
@@ -109,13 +109,14 @@ class Tare:
         n = len(self._empty)
         if n < self._n_frames:
             raise Skip(f"warming up: frame {n} of {self._n_frames} of the empty pad")
-        frames = np.ma.masked_invalid(np.stack(self._empty))
-        known = ~np.ma.getmaskarray(frames).all(axis=0)
-        halves = 0.5 * frames  # the sum of two readings may overflow
-        self._baseline = 2.0 * np.ma.median(halves, axis=0).filled(0.0)
+        frames = np.stack(self._empty)
+        known = ~np.isnan(frames).all(axis=0)
         self._known = None if known.all() else known
+        frames = np.where(known, frames, 0.0)
+        halves = 0.5 * frames  # the sum of two readings may overflow
+        self._baseline = 2.0 * np.nanmedian(halves, axis=0)
         if self._drift_s is not None and self._touched is None:
-            self._touched = _touched(frames)
+            self._touched = _touched(frames[:, known])
         self._made, self._empty = True, []
 
     def _drift(self, readings: NDArray[np.float64], gap: float | None) -> None:
@@ -131,17 +132,16 @@ class Tare:
         self._baseline = self._baseline + np.where(frozen, 0.0, share * above)
 
 
-def _touched(frames: np.ma.MaskedArray[Any, Any]) -> float:
+def _touched(frames: NDArray[Any]) -> float:
     """Return from which reading above the baseline on a cell is touched.
 
     Parameters
     ----------
-    frames : masked ndarray, shape (n, rows, columns)
-        The empty pad's readings, in any unit.
+    frames : ndarray, shape (n_frames, n_cells)
+        The empty pad's readings, in any unit; NaN where there is none, in no cell everywhere.
     """
-    with np.errstate(over="ignore"):
-        noise = np.ma.std(frames, axis=0).compressed()
-        steps = np.diff(np.unique(frames.compressed()))
-    changing = noise[noise > 0.0]  # many pads read 0 below some load
-    level = NOISES * float(np.median(changing)) if changing.size else 0.0
+    with np.errstate(over="ignore"):  # of cells that change: many pads read 0 below some load
+        noise = np.nanstd(frames, axis=0)[np.nanmin(frames, axis=0) < np.nanmax(frames, axis=0)]
+        steps = np.diff(np.unique(frames[~np.isnan(frames)]))
+    level = NOISES * float(np.median(noise)) if noise.size else 0.0
     return max(level, STEPS * float(steps.min(initial=math.inf)) if steps.size else 0.0, TINY)

@@ -52,8 +52,10 @@ class Taring:
         late = time.monotonic() - self._since > LONGEST_S and n >= FEWEST
         if n < N_FRAMES and not late:
             return None
-        frames = np.ma.masked_invalid(np.stack(self._readings))
-        return np.asarray(np.ma.median(frames, axis=0).filled(np.nan), dtype=np.float64)
+        frames = np.stack(self._readings)
+        known = ~np.isnan(frames).all(axis=0)
+        baseline = np.nanmedian(np.where(known, frames, 0.0), axis=0)
+        return np.where(known, baseline, np.nan)
 
     @property
     def n_frames(self) -> int:
