@@ -166,8 +166,8 @@ def _offset_told(looked: Looked) -> Iterator[str]:
     measured = looked.sensors[0].measured
     height = measured.highest - measured.offset
     if abs(measured.offset) > SHARE_OF_PEAK * height and installed().has("steps", "tare"):
-        yield "loads and centres, as contacts gives, are of whole readings, the offset included;"
-        yield "a pipeline whose first step is tare takes it off, by frames of the empty pad at the start"
+        yield "loads and centres, as contacts gives, are of whole readings, offset included;"
+        yield "a pipeline whose first step is tare takes it off, by frames of the empty pad first"
 
 
 def _commands(looked: Looked, works: _Works, settings: Sequence[str]) -> list[str]:
