@@ -134,6 +134,8 @@ class Pipeline(Graph):
     ) -> Results:
         """Return the results of the frames, in order, as they are taken; stateful steps keep state.
 
+        Frames of another label (of another recording or sensor) find none of it.
+
         Parameters
         ----------
         frames : iterable of Frame or ndarray, optional

@@ -71,6 +71,8 @@ class RunSettings:
 class Runner(Generic[ResultT]):
     """Call it with a frame, get the result; stateful steps keep their state between calls.
 
+    They keep one for each label: frames of another recording or sensor find none of its state.
+
     Parameters
     ----------
     pipeline : Graph
@@ -128,6 +130,11 @@ class Runner(Generic[ResultT]):
     def stateful(self) -> bool:
         """Whether a step keeps something from frame to frame."""
         return self.plan.stateful
+
+    @property
+    def n_states(self) -> int:
+        """Of how many labels, of recordings and sensors, steps have kept a state so far."""
+        return len(self._context.labels)
 
     def repeats(self, frame: Frame) -> bool:
         """Return whether the frame would reuse the last one's result."""

@@ -376,6 +376,10 @@ class _Run:
             self._finish_lines()
             came = self.interrupted
             self.tally.close(self.people, self.report, words_of(came) if came else "")
+            if self.runner.n_states == self.tally.n > 1:
+                text = f"steps that keep state began anew with each of {self.tally.n} recordings"
+                text += " of one frame; their folder is read as one recording"
+                self.people.print(text, style="yellow", soft_wrap=True)
             drawn = self.drawing is not None and self.drawing.save(self.stderr)
             if self.drawing is not None:
                 self.interrupted = came or self.drawing.interrupted

@@ -110,6 +110,15 @@ def test_people_read_the_same_and_see_the_fullest_frame(mat: Path) -> None:
 
 
 @pytest.mark.slow  # much is compiled
+def test_where_cells_rest_at_much_tare_is_named(tmp_path: Path, nothing_tried: None) -> None:
+    values = RNG.normal(0.0, 1.0, (20, 6, 8))
+    values[10:, 2:4, 3:5] += 80.0
+    for name, rest in (("zero.npy", 0.0), ("high.npy", 500.0)):
+        np.save(tmp_path / name, values + rest)
+        told = "first step is tare" in run(tmp_path / name)
+        assert told == (rest > 0.0)
+
+
 def test_the_commands_it_gives_work_as_they_stand(tmp_path: Path) -> None:
     path = tmp_path / "my mat.csv"
     path.write_text(flat(film(12, 6, 10)))
