@@ -26,6 +26,7 @@ from tactile_graph.engine.program import make_program
 from tactile_graph.errors import RuleError, UsageError
 from tactile_graph.pipeline.facts import quantity_trouble
 from tactile_graph.pipeline.graph import FrameRule, Graph, Node
+from tactile_graph.steps.rules import square_wanted
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph.wires.image import Image
@@ -413,6 +414,12 @@ def _broken(rule: FrameRule, image: Image) -> str:
     pitch = rule.pitch_cm
     if pitch is not None and any(abs(p - pitch) > 1e-6 * pitch for p in image.pitch_cm):
         return f"step {rule.step!r} takes a pitch of {pitch} cm, got a frame of {image.pitch_cm} cm"
+    if rule.square_to is not None and (wanted := square_wanted(image, rule.square_to)):
+        across, down = image.pitch_cm
+        return (
+            f"step {rule.step!r} takes {wanted}, got a frame with a pitch of {across:g} by "
+            f"{down:g} cm"
+        )
     return ""
 
 

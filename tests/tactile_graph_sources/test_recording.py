@@ -126,6 +126,10 @@ def test_missing_files_and_directories_are_named(tmp_path: Path) -> None:
     write(tmp_path, b"1,2", "walk.csv")
     with pytest.raises(DataError, match=r"there is no such file; did you mean 'walk.csv'\?"):
         frames_of(tmp_path / "walks.csv")
+    with pytest.raises(DataError, match=r"there is no such file; no file fits this pattern"):
+        frames_of(tmp_path / "*.csv")
+    with pytest.raises(DataError, match="save what standard input gives as a file first"):
+        frames_of(Path("-"))
     with pytest.raises(DataError, match=r"is a directory; give a file in it \(walk.csv\)$"):
         frames_of(tmp_path)
     write(tmp_path, b"1,2", "wander.csv")

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tactile_graph.quantities import unit_of
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.readings.clipped_noise import clipped_noise
+from tactile_graph_filters.readings.dead_below import dead_below
 from tactile_graph_filters.readings.dead_lines import dead_lines
 from tactile_graph_filters.readings.ordered import in_order
 
@@ -34,7 +35,8 @@ def noise_level(image: Image) -> float:
     Parameters
     ----------
     image : Image
-        Unloaded in at least a quarter of its valid cells. Dead rows and columns are left out.
+        Unloaded in at least a quarter of its valid cells. Dead rows and columns are left out,
+        and cells that are dead far below the others (`dead_below`).
 
     Returns
     -------
@@ -67,6 +69,8 @@ def lower_readings(image: Image) -> tuple[float, float, float] | None:
     if rows.any() or columns.any():
         alive = ~rows[:, None] & ~columns
         usable = alive if usable is None else alive & usable
+    if (dead := dead_below(image)) is not None:
+        usable = ~dead if usable is None else usable & ~dead
     if usable is not None:
         values = values[usable]
     if values.size == 0:

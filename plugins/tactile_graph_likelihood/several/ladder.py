@@ -19,7 +19,7 @@ from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.alike import alikeness
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
-from tactile_graph_likelihood.several.partings import across, partings, sketch_of
+from tactile_graph_likelihood.several.partings import across, partings, sketch_of_mask
 from tactile_graph_likelihood.several.scene import Scene
 from tactile_graph_likelihood.several.seeds import seeds
 from tactile_graph_likelihood.several.sketch import STAGES, lay_sketches, settle_sketches
@@ -118,10 +118,7 @@ class Ladder(Scene):
                 continue
             beside, rest = self.beside_sketches(points, k)
             before = self.sketched(points[k : k + 1].copy(), beside, SKETCHED - 1)
-            key = mask.tobytes()
-            if key not in self.halves:
-                self.halves[key] = self.parted(mask, beside, 1)
-            for worth, pair in self.halves[key]:
+            for worth, pair in self.halves_of(mask, beside):
                 found.append((worth - before, np.concatenate([rest, pair])))
         return self.likeliest_of(found)
 
@@ -191,13 +188,20 @@ class Ladder(Scene):
         ]
         return sorted(pairs, key=lambda it: -it[0])
 
+    def halves_of(self, mask: Mask, beside: JointProblem) -> list[tuple[float, Values]]:
+        """Return the best pair of sketches for a mask, and its worth beside what lay there first.
+
+        They settle beside whatever lies there later, so that a mask is parted once.
+        """
+        key = mask.tobytes()
+        if key not in self.halves:
+            self.halves[key] = self.parted(mask, beside, 1)
+        return self.halves[key]
+
     def sketch_of(self, mask: Mask) -> Values:
         """Return the sketch with a mask's moments, shape (1, 6)."""
-        r, c = np.nonzero(mask)
-        logs = self.problem.logs[r, c].sum()
-        sums = [len(r), c.sum(), r.sum(), (c * c).sum(), (r * c).sum(), (r * r).sum(), logs]
         point = np.zeros((1, WIDTH))
-        sketch_of.call(np.array(sums, dtype=np.float64), self.problem.grid, point[0])
+        sketch_of_mask.call(mask, self.problem.logs, self.problem.grid, point)
         return point
 
     def surplus(self, load: Values) -> float:

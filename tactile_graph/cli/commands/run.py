@@ -396,8 +396,13 @@ class _Run:
             )
 
     def _keeps(self) -> bool:
-        """Return whether what is written stays if the run ends here."""
-        return self.lines is not None and getattr(self.lines, "keeps", True)
+        """Return whether what is written stays if the run ends here.
+
+        Where the writer does not say it, the file tells: it is there, or is not yet.
+        """
+        if self.lines is None or self.output is None:
+            return False
+        return bool(getattr(self.lines, "keeps", Path(self.output.name).exists()))
 
     def _lies_at(self) -> str | None:
         """Return where what is written lies: beside an older output that stays."""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.cli.summary.quantiles import Numbers
 from tactile_graph.cli.summary.reading import LEAD, Chunk, Column, Lines, as_float, is_long
-from tactile_graph.vocabulary import UNITS, words_and_unit
+from tactile_graph.vocabulary import UNITS, error_name, words_and_unit
 
 LONG = ("output", "item", "outcome", "type")
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -199,8 +199,7 @@ class Summary:
                     _gather(output, item, numbers, texts)
             for output, errors in row.get("errors", {}).items():
                 for error, value in errors.items():
-                    head, _, unit = error.rpartition("_")
-                    _gather(f"{output}.{head}_error_{unit}", value, numbers, texts)
+                    _gather(f"{output}.{error_name(error)}", value, numbers, texts)
         frames = np.array([as_float(row.get("frame", np.nan)) for row in rows])
         times = np.array([as_float(row.get("time_s", np.nan)) for row in rows])
         for group in groups:

@@ -105,7 +105,14 @@ def test_a_store_that_is_there_is_refused_with_what_goes_on_with_it(
 
 @pytest.mark.parametrize(
     ("target", "message"),
-    [("b.xyz", "TARGET must end in .zarr, .npz, .csv"), ("a.npz", "is there already")],
+    [
+        ("b.xyz", "TARGET must end in .zarr, .npz, .csv"),
+        ("b", "got 'b'\n"),
+        (".csv", "must end"),
+        ("b.cvs", "got 'b.cvs'; did you mean '.csv'?"),
+        ("b.csv.gz", "TARGET must end in .zarr"),
+        ("a.npz", "is there already"),
+    ],
 )
 def test_a_target_that_will_not_do_is_refused(
     tmp_path: Path, made: list[Frame], target: str, message: str
@@ -113,6 +120,21 @@ def test_a_target_that_will_not_do_is_refused(
     result = CliRunner().invoke(convert, [str(tmp_path / "a.npz"), str(tmp_path / target)])
     assert result.exit_code == 2
     assert message in result.output
+
+
+def test_an_ending_may_be_in_capitals(tmp_path: Path, made: list[Frame]) -> None:
+    assert "B.CSV: 6 frames" in run(tmp_path / "a.npz", tmp_path / "B.CSV")
+
+
+def test_a_target_within_the_folder_that_is_the_recording_is_refused(tmp_path: Path) -> None:
+    """Or it would be a part of the recording from then on."""
+    (tmp_path / "parts").mkdir()
+    for i in range(2):
+        (tmp_path / "parts" / f"f{i}.csv").write_text("1,2,3\n4,5,6\n")
+    args = [str(tmp_path / "parts"), str(tmp_path / "parts" / "f2.csv")]
+    result = CliRunner().invoke(cli, ["convert", *args])
+    assert result.exit_code == 2
+    assert "f2.csv: would be a part of what the command reads" in result.stderr
 
 
 def test_a_source_that_is_no_recording_is_an_error(tmp_path: Path) -> None:

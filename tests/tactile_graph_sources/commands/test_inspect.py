@@ -230,6 +230,23 @@ def test_nothing_is_dead_or_stuck_on_a_vendors_insoles() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("nothing_tried")
+@pytest.mark.parametrize("n", [64, 110])
+def test_cells_dead_far_below_how_the_others_rest_hide_neither_noise_nor_offset(
+    n: int, tmp_path: Path
+) -> None:
+    rng = np.random.default_rng(n)
+    dead = (rng.permutation(256) < n).reshape(16, 16)
+    films = np.rint(rng.normal(20.0, 1.5, (40, 16, 16)))
+    films[np.arange(40), 5 + np.arange(40) % 6, 8] += 200.0
+    np.save(tmp_path / "a.npy", np.where(dead, 0.0, films))
+    (sensor,) = looked(tmp_path / "a.npy")["sensors"]
+    assert sensor["dead"] == np.argwhere(dead).tolist()
+    assert (sensor["noise"], sensor["offset"]) == pytest.approx((1.5, 18.0), rel=0.25)
+    assert sensor["offset_spread"] < 3.0
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("sigma", [0.6, 1.0, 3.0])
 def test_the_noise_of_whole_counts_is_that_before_they_were_rounded(
     sigma: float, tmp_path: Path
