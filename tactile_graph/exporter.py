@@ -48,6 +48,17 @@ def write_block(writer: Writer, block: Block[Result]) -> None:
         writer.write(result)
 
 
+def close_early(writer: Writer) -> None:
+    """Close the writer of a run that ended early, by its method ``close_early`` if it has one.
+
+    Raises
+    ------
+    UsageError
+        If what is left cannot be written.
+    """
+    getattr(writer, "close_early", writer.close)()
+
+
 class Export(NamedTuple):
     """What is to be written.
 

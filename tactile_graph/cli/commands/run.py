@@ -402,7 +402,7 @@ class _Run:
         """
         if self.lines is None or self.output is None:
             return False
-        return bool(getattr(self.lines, "keeps", Path(self.output.name).exists()))
+        return bool(getattr(self.lines, "keeps", Path(str(self._lies_at())).exists()))
 
     def _lies_at(self) -> str | None:
         """Return where what is written lies: beside an older output that stays."""
@@ -422,9 +422,11 @@ class _Run:
         """Close what is written and say beside it how it was made; the first trouble stands."""
         if self.lines is None:
             return
+        from tactile_graph.exporter import close_early
+
         early = self.error is not None or (self.interrupted is not None and not self._is_endless())
         try:
-            (getattr(self.lines, "close_early", self.lines.close) if early else self.lines.close)()
+            close_early(self.lines) if early else self.lines.close()
             self.written = not getattr(self.lines, "broken", False)
         except BrokenPipeError:
             raise
