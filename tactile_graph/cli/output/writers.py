@@ -314,6 +314,8 @@ class LineFile:
         n = self._n_lines
         whole = f"the first {n} frames are" if n > 1 else "the first frame is"
         kept = f"{whole} in it, and no part of another" if n else "no frame is in it"
+        if self._older is not None:
+            kept += f"; {stays(self.output)}"
         raise UsageError(f"{self.lies_at}: {why}; {kept}") from error
 
 

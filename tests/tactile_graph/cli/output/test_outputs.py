@@ -62,6 +62,15 @@ def test_a_full_disc_ends_a_run_with_whole_lines_and_says_how_many(tmp_path: Pat
     assert (note["complete"], note["result"]["frames"]) == (False, n)
 
 
+def test_an_older_file_stays_on_a_full_disc_and_is_told(tmp_path: Path) -> None:
+    (tmp_path / "out.jsonl").write_text("older\n")
+    with full_at(4096):
+        got = call("run", "discs", "--frames", 100, "-o", "out.jsonl")
+    assert "error: out.unfinished.jsonl: cannot be written: File too large" in got.stderr
+    assert got.stderr.endswith("and no part of another; the older out.jsonl stays\n")
+    assert (tmp_path / "out.jsonl").read_text() == "older\n"
+
+
 def test_a_note_that_has_no_room_either_hides_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
