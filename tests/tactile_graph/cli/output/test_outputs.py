@@ -176,6 +176,16 @@ def test_what_a_run_that_ended_early_wrote_is_replaced_by_the_next(
     assert not (tmp_path / "out.unfinished.csv").exists()
 
 
+def test_frames_that_ctrl_c_alone_ends_replace_an_older_output(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "out.csv").write_text("older\n")
+    monkeypatch.setattr("tactile_graph.cli.many.made_of.device", lambda pipeline: "a port")
+    interrupted_at(2, monkeypatch)
+    assert "wrote out.csv\n" in call("run", "discs", "-o", "out.csv").stderr
+    assert len((tmp_path / "out.csv").read_text().splitlines()) == 3
+
+
 def test_an_older_output_stays_whole_until_the_next_is(tmp_path: Path) -> None:
     (tmp_path / "out.csv").write_text("older\n")
     (tmp_path / "out.csv").chmod(0o640)
