@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.errors import DataError, UsageError
-from tactile_graph.files import put_on_disc, said, uninterrupted
-from tactile_graph.part_files import part_of, remove
+from tactile_graph.files import put_on_disc, said, uninterrupted, whole_folder
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 from tactile_graph_sources.readers.words.truth import truth_to_json
@@ -326,21 +325,16 @@ def _note(frame: Frame) -> bytes:
 
 
 def _converted(path: Path, frames: Iterator[Frame], about: str) -> int:
-    """Write a store in a hidden folder beside its name: half of it would pass for the whole."""
-    folder = part_of(path)
-    made = folder / path.name
-    try:
+    """Write a store that gets its name at the end: half of it would pass for the whole."""
+    with (
+        whole_folder(path) as made,
+        StoreWriter(made, about={"converted_from": about}, called=path) as store,
+    ):
+        for frame in frames:
+            store.write(frame)
+    if store.n_frames:
         with said(path):
-            folder.mkdir()
-        with StoreWriter(made, about={"converted_from": about}, called=path) as store:
-            for frame in frames:
-                store.write(frame)
-        if store.n_frames:
-            with said(path):
-                made.rename(path)
-                put_on_disc(path / JOURNAL, path.parent)
-    finally:
-        remove(folder)
+            put_on_disc(path / JOURNAL, path.parent)
     return store.n_frames
 
 
