@@ -333,8 +333,6 @@ class ManyRun:
         name = self.asked.output.name
         if self.interrupted is None and self.error is None:
             text = "" if name == "-" else f"wrote {name}"
-        elif self.unfinished is not None and self.low == self.asked.span.start:
-            text = f"nothing of {name} is kept yet, for --resume to go on with"
         elif self.unfinished is not None:
             text = f"{self.n_kept} frames are kept: --resume goes on with {name}"
         else:

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,6 @@ from click.testing import CliRunner
 from helpers_many import command, ran, ran_here, surroundings, write_plugin
 from tactile_graph import load
 from tactile_graph.cli import cli
-from tactile_graph.cli.many.many_run import ManyRun
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
 DISCS = ("--source", "simulate", "--with", "scene=discs")
@@ -200,20 +199,6 @@ def test_a_damaged_archive_is_refused_as_by_one_process(folder: Path) -> None:
     assert "Bad CRC-32" in one.stderr
     assert (two.returncode, two.stderr) == (one.returncode, one.stderr)
     assert not [*folder.glob("*x.csv*")]
-
-
-def test_a_run_that_ends_before_anything_is_kept_promises_nothing(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def stopped(self: ManyRun, held: object) -> Iterator[bytes]:
-        raise KeyboardInterrupt
-        yield b""
-
-    monkeypatch.setattr(ManyRun, "_parts", stopped)
-    got = ran_here(folder, "run", "circle-1", "a.zarr", "-o", "early.csv", "--workers", "2")
-    assert got.returncode == 130
-    assert "nothing of early.csv is kept yet, for --resume to go on with" in got.stderr
-    assert [*folder.glob("*early.csv*")] == []
 
 
 # -- what is refused ---------------------------------------------------------------------------
