@@ -15,7 +15,12 @@ if TYPE_CHECKING:
 
 
 class Writer(Protocol):
-    """Takes results while they come."""
+    """Takes results while they come.
+
+    A writer may have ``close_early``, called in place of ``close`` where a run ended early, so that
+    an older, whole file stays. It may say in ``lies_at``, a str, under which other name what it
+    writes lies meanwhile, or then, and in ``stays``, a str, what of the older one stays.
+    """
 
     broken: bool
     """Whether something could not be written; a writer without it leaves nothing out."""
@@ -41,6 +46,17 @@ def write_block(writer: Writer, block: Block[Result]) -> None:
         return
     for result in block:
         writer.write(result)
+
+
+def close_early(writer: Writer) -> None:
+    """Close the writer of a run that ended early, by its method ``close_early`` if it has one.
+
+    Raises
+    ------
+    UsageError
+        If what is left cannot be written.
+    """
+    getattr(writer, "close_early", writer.close)()
 
 
 class Export(NamedTuple):

@@ -20,7 +20,7 @@ from types import FrameType
 from typing import Any, BinaryIO
 
 from tactile_graph.errors import UsageError
-from tactile_graph.part_files import part_of
+from tactile_graph.part_files import part_of, remove
 
 Name = str | os.PathLike[str]
 LOOKED_FOR = "tactile_graph.looked_for"
@@ -65,6 +65,36 @@ def whole_file(name: Name, by: str = "") -> Iterator[BinaryIO]:
         except BaseException:
             part.unlink(missing_ok=True)
             raise
+
+
+@contextmanager
+def whole_folder(name: Name) -> Iterator[Path]:
+    """Give a path at which to make a folder, which gets its name only at the end.
+
+    It lies in a hidden folder beside that. If anything is raised meanwhile, nothing is left behind.
+
+    Parameters
+    ----------
+    name : path
+        Under which there is nothing yet.
+
+    Raises
+    ------
+    UsageError
+        If the hidden folder cannot be made, or what is made cannot be given its name.
+    """
+    target = Path(name)
+    hidden = part_of(target)
+    try:
+        with said(name):
+            hidden.mkdir()
+        made = hidden / target.name
+        yield made
+        if made.exists():
+            with said(name):
+                made.rename(target)
+    finally:
+        remove(hidden)
 
 
 def put_on_disc(path: Path, within: Path) -> None:

@@ -20,6 +20,7 @@ from tactile_graph.files import (
     sha256_of,
     uninterrupted,
     whole_file,
+    whole_folder,
     write_whole,
 )
 
@@ -202,3 +203,26 @@ def test_a_file_that_has_not_changed_is_not_read_again(
     known = sha256_of(path)
     monkeypatch.delattr(hashlib, "file_digest")
     assert sha256_of(path) == known
+
+
+def test_a_folder_gets_its_name_at_the_end_or_is_not_there(tmp_path: Path) -> None:
+    target = tmp_path / "set"
+
+    def cut_short() -> None:
+        with whole_folder(target) as made:
+            made.mkdir()
+            (made / "half").touch()
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        cut_short()
+    assert os.listdir(tmp_path) == []
+    with whole_folder(target) as made:
+        made.mkdir()
+        (made / "all").touch()
+        assert not target.exists()
+    assert [p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*")] == ["set", "set/all"]
+    told = "set: cannot be written: Directory not empty"
+    with pytest.raises(UsageError, match=told), whole_folder(target) as made:
+        made.mkdir()
+    assert os.listdir(tmp_path) == ["set"]

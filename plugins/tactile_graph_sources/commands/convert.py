@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
 from itertools import islice
@@ -114,6 +115,7 @@ def _check(recordings: list[Path], target: Path, source: str | None) -> str:
     """Return the ending of the target that says who writes it, in small letters."""
     from tactile_graph.errors import did_you_mean
     from tactile_graph.files import check_target
+    from tactile_graph_sources.stores.layout import is_store
 
     kinds = installed().offered(OFFERS)
     name = target.name
@@ -124,7 +126,11 @@ def _check(recordings: list[Path], target: Path, source: str | None) -> str:
     if bool(recordings) == (source is not None):
         raise click.UsageError("give recordings before TARGET, or --source, and not both")
     if target.exists():
-        raise click.UsageError(f"{target} is there already")
+        goes_on = f"; 'record --append {shlex.quote(str(target))}' goes on with it"
+        raise click.UsageError(
+            f"{target} is there already; remove it, or choose another name"
+            + (goes_on if is_store(target) else "")
+        )
     check_target("TARGET", target)
     check_targets([("TARGET", target)])
     return max(fitting, key=len)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.errors import DataError, UsageError
-from tactile_graph.files import put_on_disc, said, uninterrupted
+from tactile_graph.files import put_on_disc, said, uninterrupted, whole_folder
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 from tactile_graph_sources.readers.words.truth import truth_to_json
@@ -75,6 +75,8 @@ class StoreWriter:
         Go on with a store that is there. Otherwise it must not exist.
     about : mapping
         Kept as attributes: preset, pad, port, whatever says where the frames come from.
+    called : path, optional
+        What errors call it, where it is given another name at the end.
 
     Raises
     ------
@@ -89,8 +91,10 @@ class StoreWriter:
         chunk: int = CHUNK,
         append: bool = False,
         about: Mapping[str, Any] | None = None,
+        called: Path | None = None,
     ) -> None:
         self.path = Path(path)
+        self._called = called or self.path
         self.chunk = chunk
         self.about = dict(about or {})
         self.n_written = 0
@@ -159,7 +163,8 @@ class StoreWriter:
         elif grid == self._grid:
             self._held.append(frame)
         else:
-            raise DataError(str(self.path), f"holds {_said(self._grid)}; this one is {_said(grid)}")
+            told = f"holds {_said(self._grid)}; this one is {_said(grid)}"
+            raise DataError(str(self._called), told)
         if len(self._held) >= self.chunk - self.n_written % self.chunk:
             self.flush()
 
@@ -174,7 +179,7 @@ class StoreWriter:
         }
         # Made whole beside its name: a store whose making was cut short would never open.
         part = self.path.with_name(f".{self.path.name}.part")
-        with said(self.path):
+        with said(self._called):
             shutil.rmtree(part, ignore_errors=True)
             try:
                 self._metadata = self._make(part, attributes)
@@ -249,7 +254,7 @@ class StoreWriter:
             If they cannot be written: the disc is full.
         """
         if self._held:
-            with said(self.path):
+            with said(self._called):
                 self._put(self._held)
 
     def _put(self, frames: list[Frame]) -> None:
@@ -320,13 +325,16 @@ def _note(frame: Frame) -> bytes:
 
 
 def _converted(path: Path, frames: Iterator[Frame], about: str) -> int:
-    try:
-        with StoreWriter(path, about={"converted_from": about}) as store:
-            for frame in frames:
-                store.write(frame)
-    except Exception:  # half of a recording would pass for all of it
-        shutil.rmtree(path, ignore_errors=True)
-        raise
+    """Write a store that gets its name at the end: half of it would pass for the whole."""
+    with (
+        whole_folder(path) as made,
+        StoreWriter(made, about={"converted_from": about}, called=path) as store,
+    ):
+        for frame in frames:
+            store.write(frame)
+    if store.n_frames:
+        with said(path):
+            put_on_disc(path / JOURNAL, path.parent)
     return store.n_frames
 
 

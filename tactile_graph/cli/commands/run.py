@@ -28,6 +28,7 @@ from tactile_graph.cli.output.plot import IN_A_STRIP, Plot, check_plot, plot_of
 from tactile_graph.cli.targets import check_targets
 from tactile_graph.errors import UsageError
 from tactile_graph.files import is_plain
+from tactile_graph.plugins.registry import installed
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
@@ -405,14 +406,31 @@ class _Run:
         """
         if self.lines is None or self.output is None:
             return False
-        return bool(getattr(self.lines, "keeps", Path(self.output.name).exists()))
+        return bool(getattr(self.lines, "keeps", Path(str(self._lies_at())).exists()))
+
+    def _lies_at(self) -> str | None:
+        """Return where what is written lies: beside an older output that stays."""
+        return None if self.output is None else getattr(self.lines, "lies_at", self.output.name)
+
+    def _is_endless(self) -> bool:
+        """Return whether Ctrl-C is what ends the frames, as those of a pad at a port."""
+        from tactile_graph.cli.many.made_of import device
+
+        source = self.pipeline.source
+        if device(self.pipeline):
+            return True
+        reads = source is not None and installed().has("readers", source.name)
+        return not reads and self.span.expected(self.report.n_expected) is None
 
     def _finish_lines(self) -> None:
         """Close what is written and say beside it how it was made; the first trouble stands."""
         if self.lines is None:
             return
+        from tactile_graph.exporter import close_early
+
+        early = self.error is not None or (self.interrupted is not None and not self._is_endless())
         try:
-            self.lines.close()
+            close_early(self.lines) if early else self.lines.close()
             self.written = not getattr(self.lines, "broken", False)
         except BrokenPipeError:
             raise
@@ -432,7 +450,7 @@ class _Run:
     def _provenance(self, complete: bool) -> None:
         from tactile_graph.provenance import provenance, write_provenance
 
-        name = None if self.output is None else self.output.name
+        name = self._lies_at()
         if name in (None, "-") or not (is_plain(str(name)) or Path(str(name)).is_dir()):
             return  # nothing stands beside a pipe or a device
         data = provenance(
@@ -461,10 +479,12 @@ class _Run:
 
             several = without_one_unit(self.form_of_table, self.quantities)
             say.print(several, style="yellow", soft_wrap=True) if several else None
-        written = self.output.name if self.written and self.output is not None else None
-        for name in (written, self.plot if drawn else None):
+        written = self._lies_at() if self.written else None
+        stays = getattr(self.lines, "stays", "") if self.written else ""
+        for name, more in ((written, stays), (self.plot if drawn else None, "")):
             if name not in (None, "-"):
-                say.print(f"wrote {name}", style="dim", soft_wrap=True)
+                told = f"wrote {name}; {more}" if more else f"wrote {name}"
+                say.print(told, style="dim", soft_wrap=True)
         for note in self.drawing.notes() if self.drawing is not None and drawn else ():
             say.print(note, style="dim", soft_wrap=True)
         most = self.span.most if self.error is None else None

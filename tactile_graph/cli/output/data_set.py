@@ -21,7 +21,7 @@ from tactile_graph.api.result import Result
 from tactile_graph.cli.output.parquet import ParquetFile, pyarrow
 from tactile_graph.engine.tables.columns import Column
 from tactile_graph.engine.tables.table import Table
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import UsageError, one_of
 from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import check_target, said, uninterrupted, write_whole
 from tactile_graph.foreign_text import visible
@@ -71,6 +71,8 @@ class DataSet:
         assert export.table is not None  # it holds numbers
         self.broken = False
         """Whether rows could not be written; recordings that were whole before stay."""
+        self.stays = ""
+        """What is to be said of older rows that stay."""
         self._root = Path(export.name)
         self._table: Table = export.table
         self._names = Names(export.pipeline)
@@ -122,6 +124,18 @@ class DataSet:
             self._write_manifest()
         finally:
             self._lock.release()
+
+    def close_early(self) -> None:
+        """Give all parts their names, but those of recordings of which there are older rows."""
+        kept = []
+        for name, recording in list(self._written.items()):
+            if recording.part is not None and not recording.files and name in self._entries:
+                recording.part.discard()
+                del self._written[name]
+                kept.append(name)
+        if kept:
+            self.stays = f"of what was under way, {one_of(kept)}, the older rows stay"
+        self.close()
 
     def _begin(self) -> None:
         if self._lock.held:

@@ -19,6 +19,7 @@ import numpy as np
 
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.array_files import Cells, Container, Growing, Hdf5, Zarr, put_in_place
+from tactile_graph.cli.output.older import stays, unfinished_by
 from tactile_graph.draw.display import view
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed
 from tactile_graph.errors import UsageError, one_of
@@ -110,6 +111,10 @@ class ImageStore:
         self.output = output
         self.broken = False
         """Whether frames could not be written; then nothing is left."""
+        self.lies_at = output
+        """Where they stand when it is closed."""
+        self.stays = ""
+        """What is to be said of older ones that stay."""
         target = Path(os.path.realpath(output))
         self._part = part_of(target)
         self._target = target
@@ -159,11 +164,17 @@ class ImageStore:
             self._container.close()
             put_in_place(self._part, self._target)
 
+    def close_early(self) -> None:
+        """Write what is left; older stacks stay, and these get a name beside them."""
+        if beside := unfinished_by(self.output):
+            self._target, self.lies_at, self.stays = Path(beside), beside, stays(self.output)
+        self.close()
+
     @contextmanager
     def _whole(self) -> Iterator[None]:
         """Leave nothing behind where anything is raised."""
         try:
-            with uninterrupted(), said(self.output, left_of(self._target)):
+            with uninterrupted(), said(self.output, left_of(Path(self.output))):
                 yield
         except BaseException:
             self.broken = True

@@ -40,6 +40,20 @@ def opened_alone(output: str) -> FileIO:
     if not is_plain(output):
         with said(output):
             return FileIO(output, "w")
+    file = held_alone(output)
+    with said(output):
+        os.ftruncate(file.fileno(), 0)
+    return file
+
+
+def held_alone(output: str) -> FileIO:
+    """Return an output, opened as it is, which no other run writes until it is closed.
+
+    Raises
+    ------
+    UsageError
+        As of `opened_alone`.
+    """
     if is_locked(journal_of(output)):  # before the file is made
         raise refused(output)
     with said(output):
@@ -47,7 +61,6 @@ def opened_alone(output: str) -> FileIO:
         if not _alone(file) or is_locked(journal_of(output)):
             file.close()
             raise refused(output)
-        os.ftruncate(file.fileno(), 0)
         return file
 
 

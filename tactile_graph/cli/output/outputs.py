@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tactile_graph.errors import PluginError, TactileGraphError, UsageError, did_you_mean
-from tactile_graph.exporter import Export, Exporter, Writer, write_block
+from tactile_graph.exporter import Export, Exporter, Writer, close_early, write_block
 from tactile_graph.plugins.registry import installed
 
 if TYPE_CHECKING:
@@ -127,6 +127,11 @@ class _Named:
         """Write what is left."""
         with self._named("close"):
             self._writer.close()
+
+    def close_early(self) -> None:
+        """Write what is left of a run that ended early."""
+        with self._named("close"):
+            close_early(self._writer)
 
 
 def forms() -> list[str]:

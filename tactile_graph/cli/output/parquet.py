@@ -14,13 +14,14 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from tactile_graph.api.result import Result
+from tactile_graph.cli.output.older import stays, unfinished_by
 from tactile_graph.engine.blocks.block import Block
 from tactile_graph.engine.tables.columns import Column
 from tactile_graph.engine.tables.table import Table, units_of
 from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer, check_plain
 from tactile_graph.files import left_of, said, uninterrupted
-from tactile_graph.part_files import part_of
+from tactile_graph.part_files import part_of, remove
 
 ROWS_A_GROUP = 10_000
 LARGEST = 2**63
@@ -66,6 +67,10 @@ class ParquetFile:
         self.output = output
         self.broken = False
         """Whether rows could not be written; then nothing is left."""
+        self.lies_at = output
+        """Where it stands when it is closed."""
+        self.stays = ""
+        """What is to be said of an older one that stays."""
         self._target = Path(os.path.realpath(output))
         self._part = part_of(self._target)
         self._table = table
@@ -105,6 +110,19 @@ class ParquetFile:
             self._correct_units()
             os.replace(self._part, self._target)
 
+    def close_early(self) -> None:
+        """Write what is left; an older file stays, and this one gets a name beside it."""
+        if beside := unfinished_by(self.output):
+            self._target, self.lies_at, self.stays = Path(beside), beside, stays(self.output)
+        self.close()
+
+    def discard(self) -> None:
+        """Leave nothing of it."""
+        self.broken = True
+        if self._writer is not None:
+            self._writer.close()
+        remove(self._part)
+
     def _correct_units(self) -> None:
         """Write the file anew where later frames were in other units than the first."""
         units = units_of(self._table, self._quantities)
@@ -121,7 +139,7 @@ class ParquetFile:
     def _whole(self) -> Iterator[None]:
         """Leave nothing behind where anything is raised."""
         try:
-            with uninterrupted(), said(self.output, left_of(self._target)):
+            with uninterrupted(), said(self.output, left_of(Path(self.output))):
                 yield
         except BaseException:
             self.broken = True

@@ -5,13 +5,15 @@ from __future__ import annotations
 import json
 import math
 import os
+import stat
 import sys
 from collections.abc import Iterable, Iterator
 from typing import Any, BinaryIO, NoReturn, Protocol
 
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.column_texts import csv_lines, number_texts
-from tactile_graph.cli.output.one_run import opened_alone
+from tactile_graph.cli.output.older import stays, unfinished_by
+from tactile_graph.cli.output.one_run import held_alone, opened_alone
 from tactile_graph.engine.blocks.block import Block
 from tactile_graph.engine.outcomes.notices import untold
 from tactile_graph.engine.outcomes.outcome import NO_VALUE
@@ -23,6 +25,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import is_plain, said
 from tactile_graph.foreign_text import csv_line, visible
+from tactile_graph.provenance import sidecar
 from tactile_graph.wires.stacks import Column, Stack
 
 
@@ -188,16 +191,26 @@ class Csv:
 class LineFile:
     """A file, or stdout, that takes whole lines; made when the first one comes.
 
+    Where there is an older, whole one, it lies beside that until it is closed.
+
     Parameters
     ----------
     output : str
         Path, or ``-`` for stdout.
     lines : Lines
+    at_once : bool
+        Whether it replaces an older one with its first line.
     """
 
-    def __init__(self, output: str, lines: Lines) -> None:
+    def __init__(self, output: str, lines: Lines, at_once: bool = False) -> None:
         self.output = output
         self.lines = lines
+        self.lies_at = output
+        """Where it lies."""
+        self.stays = ""
+        """What is to be said of an older one that stays."""
+        self._at_once = at_once
+        self._older: BinaryIO | None = None
         self._stdout = sys.stdout  # whatever takes its name while frames are run
         self.broken = False
         """Whether a line could not be written."""
@@ -238,9 +251,17 @@ class LineFile:
             if self.output == "-":
                 self._file = self._stdout.buffer
             else:
-                self._file = opened_alone(self.output)
+                self._file = self._opened()
             self._put(self._file, self.lines.head())
         return self._file
+
+    def _opened(self) -> BinaryIO:
+        beside = "" if self._at_once else unfinished_by(self.output)
+        if not beside:
+            return opened_alone(self.output)
+        self._older = held_alone(self.output)  # as if it were written: others are refused
+        self.lies_at = beside
+        return opened_alone(beside)
 
     def close(self) -> None:
         """Close the file; one without any frame still gets its head."""
@@ -248,8 +269,26 @@ class LineFile:
             return
         file = self.open()
         if self.output != "-":
-            with said(self.output):
+            with said(self.lies_at):
+                if self._older is not None:
+                    os.fsync(file.fileno())  # or a power cut may leave the name without the content
+                    os.chmod(self.lies_at, stat.S_IMODE(os.fstat(self._older.fileno()).st_mode))
                 file.close()
+        if self._older is not None:
+            with said(self.output):
+                self._older.close()  # Windows replaces no file that is open
+                os.replace(self.lies_at, os.path.realpath(self.output))
+            sidecar(self.lies_at).unlink(missing_ok=True)
+            self.lies_at = self.output
+
+    def close_early(self) -> None:
+        """Close the file; an older one stays, and this one lies beside it."""
+        if not self.broken:
+            self.open()
+        if self._older is not None:
+            self._older.close()
+            self._older, self.stays = None, stays(self.output)
+        self.close()
 
     def _put(self, file: BinaryIO, text: str) -> None:
         data = memoryview(text.encode())
@@ -269,22 +308,31 @@ class LineFile:
         why = f"cannot be written: {error.strerror or error}"
         if self.output == "-":
             raise UsageError(f"stdout {why}") from error
-        if is_plain(self.output):
+        if is_plain(self.lies_at):
             os.ftruncate(file.fileno(), self._n_bytes)
         file.close()
         n = self._n_lines
         whole = f"the first {n} frames are" if n > 1 else "the first frame is"
         kept = f"{whole} in it, and no part of another" if n else "no frame is in it"
-        raise UsageError(f"{self.output}: {why}; {kept}") from error
+        if self._older is not None:
+            kept += f"; {stays(self.output)}"
+        raise UsageError(f"{self.lies_at}: {why}; {kept}") from error
 
 
 def _json_lines(export: Export) -> Writer:
-    return LineFile(export.name, JsonLines(export.full))
+    return _line_file(export, JsonLines(export.full))
 
 
 def _csv(export: Export) -> Writer:
     assert export.table is not None  # it holds numbers
-    return LineFile(export.name, Csv(export.table))
+    return _line_file(export, Csv(export.table))
+
+
+def _line_file(export: Export, lines: Lines) -> LineFile:
+    from tactile_graph.cli.many.made_of import device
+
+    # What a device gives is followed while it comes, under its name.
+    return LineFile(export.name, lines, at_once=bool(device(export.pipeline)))
 
 
 def _joined_lines(parts: Iterator[bytes], file: BinaryIO) -> None:

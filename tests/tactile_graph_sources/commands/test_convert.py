@@ -68,19 +68,39 @@ def test_a_table_and_back_with_what_it_cannot_say_told(tmp_path: Path, made: lis
         assert a.image.pitch_cm == b.image.pitch_cm
 
 
-def test_a_store_that_a_full_disc_cuts_short_is_none(
-    tmp_path: Path, made: list[Frame], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.slow
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), OSError(28, "No space left on device")])
+def test_a_store_whose_writing_was_cut_short_is_not_there(
+    tmp_path: Path, made: list[Frame], monkeypatch: pytest.MonkeyPatch, error: BaseException
 ) -> None:
-    """Or half a recording would pass for all of it, and its name be taken."""
+    put, before = StoreWriter._put, sorted(tmp_path.rglob("*"))
 
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
+    def cut_short(self: StoreWriter, frames: list[Frame]) -> None:
+        if self.n_written:
+            raise error
+        put(self, frames)
 
-    monkeypatch.setattr(StoreWriter, "_write", full)
-    args = [str(tmp_path / name) for name in ("a.npz", "b.zarr")]
-    result = CliRunner().invoke(cli, ["convert", *args])
-    assert "b.zarr: cannot be written: No space left on device" in result.stderr
-    assert not (tmp_path / "b.zarr").exists()
+    with monkeypatch.context() as patched:
+        patched.setattr(StoreWriter, "_put", cut_short)
+        patched.setattr(StoreWriter.__init__, "__defaults__", (4, False, None, None))
+        args = [str(tmp_path / "a.npz"), str(tmp_path / "b.zarr")]
+        got = CliRunner().invoke(cli, ["convert", *args])
+    assert got.exit_code == (130 if isinstance(error, KeyboardInterrupt) else 2)
+    assert f"{tmp_path / 'b.zarr'}: cannot be written: No space" in got.stderr or (
+        isinstance(error, KeyboardInterrupt)
+    )
+    assert sorted(tmp_path.rglob("*")) == before
+    assert "6 frames" in run(*args)
+
+
+def test_a_store_that_is_there_is_refused_with_what_goes_on_with_it(
+    tmp_path: Path, made: list[Frame]
+) -> None:
+    target = tmp_path / "b.zarr"
+    run(tmp_path / "a.npz", target)
+    got = CliRunner().invoke(convert, [str(tmp_path / "a.npz"), str(target)])
+    remedies = f"remove it, or choose another name; 'record --append {target}' goes on with it"
+    assert f"{target} is there already; {remedies}\n" in got.stderr
 
 
 @pytest.mark.parametrize(

@@ -142,6 +142,11 @@ def test_a_dataset_that_was_never_written_or_lies_elsewhere_is_refused(tmp_path:
         file.create_dataset("values", (2, 4, 4), "f8", external=[("/etc/passwd", 0, 256)])
     with pytest.raises(DataError, match="lies in other files; save its values in this one"):
         frames_of(path)
+    (tmp_path / "other").write_bytes(np.array(0.3).tobytes())
+    with h5py.File(path, "w") as file:
+        file["values"] = np.ones((2, 4, 4))
+        file.create_dataset("pitch_cm", (1,), "f8", external=[(str(tmp_path / "other"), 0, 8)])
+    assert frames_of(path)[0][0].image.pitch_cm == (1.0, 1.0)
 
 
 def test_an_hdf5_file_of_very_many_or_deep_groups_is_refused(

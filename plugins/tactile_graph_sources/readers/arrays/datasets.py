@@ -97,7 +97,8 @@ def _timed(
     if times is None and said.frame_s is not None:
         times, factor = np.arange(len(frames)), said.frame_s
     times_s = None if times is None else times.astype(np.float64) * factor
-    told = {"factor": said.factor, "pitch_cm": said.pitch_cm, "quantity": said.quantity}
+    told = {"factor": said.factor, "quantity": said.quantity}
+    told |= {"pitch_cm": said.pitch_cm, "origin_cm": said.origin_cm}
     return frames, times_s, told
 
 
@@ -239,8 +240,9 @@ def seconds(times: NDArray[Any], name: str) -> tuple[NDArray[Any], str]:
 
 
 def time_among(names: Iterable[str]) -> str:
-    """Return the first of the names that says time; empty if none does."""
-    return next((n for n in sorted(names) if "time" in named((bare(n), "")).roles), "")
+    """Return the first of the names that says time, ours before all; empty if none does."""
+    ours_first = sorted(names, key=lambda n: (bare(n) != "time_s", n))
+    return next((n for n in ours_first if "time" in named((bare(n), "")).roles), "")
 
 
 def _factor(reading: Reading, name: str, times: NDArray[Any]) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,16 +20,19 @@ from tactile_graph_sources.readers.arrays.datasets import (
 )
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.words.names import named
-from tactile_graph_sources.readers.words.preamble import described
+from tactile_graph_sources.readers.words.preamble import described_by
 
+LONGEST_TEXT = 1000
+"""Letters of a text that says something of the stack."""
+TEXT = "text"
 _NOT_READ = {
     "c": ("complex", "save it as real numbers, such as abs(array)"),
     "O": ("objects or rows of unlike lengths",
           "save frames of one shape: numpy.stack([numpy.reshape(row, (ROWS, COLUMNS)) for row in "
           "array])"),
-    "S": ("text", "save it as numbers: array.astype(float)"),
-    "U": ("text", "save it as numbers: array.astype(float)"),
-    "T": ("text", "save it as numbers: array.astype(float)"),
+    "S": (TEXT, "save it as numbers: array.astype(float)"),
+    "U": (TEXT, "save it as numbers: array.astype(float)"),
+    "T": (TEXT, "save it as numbers: array.astype(float)"),
 }  # fmt: skip
 
 
@@ -69,6 +72,22 @@ def _attributes_of(item: Any) -> dict[str, Any]:
         except Exception:  # of a type that the library does not know
             continue
     return found
+
+
+def _values_beside(group: Group) -> Iterator[tuple[str, Any]]:
+    """Yield what arrays of one or two numbers, or of one text, hold; not those of other files."""
+    found = {n: a for n, a in group.arrays.items() if a.dtype.kind in "buif" and a.size in (1, 2)}
+    texts = [n for n, u in group.unread.items() if u.what == TEXT and group.root is not None]
+    for name in (*found, *texts):
+        try:
+            array = found[name] if name in found else group.root[name]
+            group.check({name: array})
+            value: Any = array[()] if array.size <= LONGEST_TEXT else None
+        except Exception:  # of a type that the library does not know, or far too large
+            continue
+        if name in texts and np.ndim(value) and np.asarray(value).dtype.kind == "u":  # of MATLAB
+            value = "".join(map(chr, np.ravel(value)))
+        yield bare(name), value
 
 
 def _with_unit(name: str, unit: object) -> str:
@@ -115,8 +134,8 @@ def held_in(reading: Reading, group: Group) -> Held:
         values_of, unit = timed[time][()].ravel(), _attributes_of(timed[time]).get("units")
         times, time = seconds(values_of, _with_unit(time, unit))
     attributes = {**_attributes_of(group.root), **_attributes_of(numbers[name])}
-    attributes |= {bare(n): np.asarray(a[()]).item() for n, a in numbers.items() if a.size == 1}
-    said = described(f"{k}: {v}" for k, v in attributes.items() if np.ndim(v) == 0)
+    attributes |= _values_beside(group)
+    said = described_by(attributes)
     what = f"{group.word} {name!r}"
     if frames:
         what = f"{group.word}s {frames[0]!r} to {frames[-1]!r}"

@@ -24,7 +24,7 @@ from tactile_graph_sources.readers.arrays.mat5 import DamagedError, Unread, vari
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
-from tactile_graph_sources.readers.words.preamble import described
+from tactile_graph_sources.readers.words.preamble import described_by
 
 _MARKS = (b"\x00\x01IM", b"\x01\x00MI")
 _AS_REAL = {"complex": "{0} = abs({0})", "sparse": "{0} = full({0})"}
@@ -54,7 +54,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     name = chosen(reading, {n: a.shape for n, a in arrays.items()}, "variable")
     time = time_among(n for n, a in arrays.items() if 1 < a.size == max(a.shape))
     times = arrays[time].ravel() if time else None
-    said = described(f"{v.bare}: {v.value}" for v in found if np.ndim(v.value) == 0)
+    said = described_by({v.bare: v.value for v in found})
     what, values = f"variable {name!r}", arrays[name]
     if not any(v.in_cells for v in found if v.name == name):
         values = frames_first(reading, values, what, times)

@@ -33,7 +33,7 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
-from tactile_graph_sources.readers.words.preamble import described
+from tactile_graph_sources.readers.words.preamble import described_by
 from tactile_graph_sources.readers.words.truth import Truth, truth_from_json
 
 MOST_MEMBERS = 1000
@@ -262,8 +262,8 @@ def _foreign(reading: Reading, arrays: Archive) -> Held:
     values, what, known = _only(reading, arrays)
     outlines = {name: arrays.outline(name) for name in arrays.names}
     time = time_among(n for n, (s, t) in outlines.items() if len(s) == 1 and t.kind in "iufMm")
-    single = [n for n, (s, t) in outlines.items() if math.prod(s) == 1 and t.kind in "iufU"]
-    said = described(f"{n}: {arrays.load(n).item()}" for n in single)
+    small = [n for n, (s, t) in outlines.items() if math.prod(s) in (1, 2) and t.kind in "iufUS"]
+    said = described_by({n: arrays.load(n) for n in small})
     times = arrays.load(time) if time else None
     if times is not None:
         times, time = seconds(times, time)

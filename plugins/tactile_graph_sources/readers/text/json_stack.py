@@ -24,7 +24,7 @@ from tactile_graph_sources.readers.tables.sensors import chosen, labels_of_lines
 from tactile_graph_sources.readers.words.compact import stamps_s
 from tactile_graph_sources.readers.words.dialect import clock_s
 from tactile_graph_sources.readers.words.names import ROLES, named
-from tactile_graph_sources.readers.words.preamble import Described, described
+from tactile_graph_sources.readers.words.preamble import PAIRS, Described, described_by
 
 FEW_LISTS, LONGEST_LIST = 200_000, 2_000_000
 LINES_LOOKED_AT = 20
@@ -145,6 +145,7 @@ def frames_of(reading: Reading, entries: Entries, damage: Sequence[Damage] = ())
         yield reading.frame(
             matrix,
             pitch_cm=entries.said.pitch_cm,
+            origin_cm=entries.said.origin_cm,
             quantity=entries.said.quantity,
             factor=entries.said.factor,
             time_s=_time(entries, k, factor),
@@ -251,7 +252,11 @@ def entries_of(where: str, content: Any, sensor: str | None = None) -> Entries:
     objects = [_plain(e) if isinstance(e, dict) else {} for e in content]
     objects = objects if sensor is None else _of_one_sensor(where, objects, sensor)
     first = objects[0]
-    lists = [k for k, v in first.items() if isinstance(v, list) and not _is_of_objects(v)]
+    lists = [
+        k
+        for k, v in first.items()
+        if isinstance(v, list) and not (_is_of_objects(v) or _is_pair(k, v))
+    ]
     text = next((k for k, v in first.items() if isinstance(v, str) and _is_packed(v)), "")
     if text and not lists:
         raise DataError(
@@ -378,7 +383,7 @@ def _of_object(where: str, content: dict[str, Any], sensor: str | None) -> Entri
     if len(content) > MOST_KEYS:
         raise DataError(where, f"its JSON has {len(content)} keys; allowed are {MOST_KEYS}")
     content = _plain(content)
-    lists = {k: v for k, v in content.items() if isinstance(v, list) and v}
+    lists = {k: v for k, v in content.items() if isinstance(v, list) and v and not _is_pair(k, v)}
     time = next((k for k in lists if _is_time(k)), "")
     times = lists.pop(time, None)
     deep = {k: v for k, v in lists.items() if isinstance(v[0], list | dict)}
@@ -418,11 +423,19 @@ def _is_time(key: str) -> bool:
 def _said(content: dict[str, Any]) -> Described:
     if {"width", "height"} <= content.keys():
         content = {**content, "columns": content["width"], "rows": content["height"]}
-    return described(
-        f"{k.rpartition('.')[2]}: {v}"
-        for k, v in content.items()
-        if isinstance(v, str | int | float)
+    return described_by(
+        {
+            k.rpartition(".")[2]: v
+            for k, v in content.items()
+            if isinstance(v, str | int | float) or _is_pair(k, v)
+        }
     )
+
+
+def _is_pair(key: str, value: Any) -> bool:
+    """Return whether a list is of two lengths, along x and y, as files of ours have them."""
+    pair = isinstance(value, list) and len(value) == 2 and key.rpartition(".")[2] in PAIRS
+    return pair and all(type(v) in (int, float) for v in value)
 
 
 def _shape(reading: Reading, cells: Cells, said: Described) -> tuple[int, int]:

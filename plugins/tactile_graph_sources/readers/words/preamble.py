@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.quantities import is_quantity
 from tactile_graph_sources.readers.words.units import (
     UNIT_WORDS,
     length_cm,
@@ -13,6 +18,7 @@ from tactile_graph_sources.readers.words.units import (
     without_length_unit,
 )
 
+PAIRS = ("pitch_cm", "origin_cm")
 _PAIR = re.compile(r"[\s#%/\"']*([^:=;,\t]{1,40}?)\s*[:=;,\t]+\s*\"?(.*?)[\s\",;]*")
 _WORDS = {
     "rows": {"rows", "row", "zeilen", "reihen", "lignes", "filas", "righe", "number of rows",
@@ -25,6 +31,7 @@ _WORDS = {
               "cell width", "raster", "rastermaß", "pas", "paso", "passo",
               "element pitch", "cell pitch", "sensor pitch"},
     "unit": UNIT_WORDS,
+    "quantity": {"quantity"},
     "rate": {"rate", "frame rate", "sampling rate", "sample rate", "frequency", "fps", "fs",
              "sampling frequency", "scanning rate", "sample rate hz", "rate hz", "abtastrate",
              "frequenz", "fréquence", "frecuencia", "frequenza", "cadence"},
@@ -44,6 +51,38 @@ class Described:
     quantity: str = "raw"
     factor: float = 1.0
     frame_s: float | None = None
+    origin_cm: tuple[float, float] | None = None
+
+
+def described_by(named: Mapping[str, Any]) -> Described:
+    """Return what named values say that stand beside a stack, as arrays or attributes.
+
+    Parameters
+    ----------
+    named : mapping
+        Name -> text, number, or array of one or two; others say nothing. Two that are called
+        ``pitch_cm`` or ``origin_cm``, as in files of ours, are along x and y.
+    """
+    values = {name: _flat(value) for name, value in named.items()}
+    said = described(f"{name}: {_plain(v[0])}" for name, v in values.items() if v.size == 1)
+    for name, pair in values.items():
+        if name in PAIRS and pair.size == 2 and pair.dtype.kind in "iuf":
+            x, y = map(float, pair)
+            pitch = name == "pitch_cm"
+            if np.isfinite(pair).all() and (not pitch or min(x, y) > 0):
+                said = replace(said, pitch_cm=(x, y)) if pitch else replace(said, origin_cm=(x, y))
+    return said
+
+
+def _flat(value: Any) -> NDArray[Any]:
+    try:
+        return np.ravel(np.asarray(value))
+    except ValueError:  # lists of unlike lengths
+        return np.empty(0)
+
+
+def _plain(value: Any) -> Any:
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else value
 
 
 def described(lines: Iterable[str]) -> Described:
@@ -77,6 +116,13 @@ def _take(said: Described, meaning: str, value: str, unit: str) -> Described:
         return said if pitch is None else replace(said, pitch_cm=(pitch, pitch))
     if meaning == "unit":
         quantity, factor = value_unit(value)
+        if quantity == "raw" and said.quantity != "raw":
+            return said  # a unit that nobody knows takes back no quantity
+        return replace(said, quantity=quantity, factor=factor)
+    if meaning == "quantity":
+        quantity, factor = (value, 1.0) if is_quantity(value) else value_unit(value)
+        if quantity in ("raw", said.quantity):  # a unit of it has told its factor, too
+            return said
         return replace(said, quantity=quantity, factor=factor)
     rate = float(number[0].replace(",", ".")) if number else 0.0
     return replace(said, frame_s=1.0 / rate) if 0.0 < rate < 1e6 else said

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -141,6 +142,26 @@ def test_a_recording_run_again_replaces_its_part_and_the_others_stay() -> None:
     run("left.txt", "right.txt")
     assert run("left.txt", frames=5).exit_code == 0
     assert rows() == {"left.txt": 5, "right.txt": 2}
+
+
+def test_older_rows_stay_where_a_run_ends_within_their_recording(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from tactile_graph.cli.commands.run import _Run
+
+    run("left.txt", frames=5)
+    real = _Run._results
+
+    def results(self: _Run) -> Iterator[object]:
+        yield next(real(self))
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(_Run, "_results", results)
+    got = run("left.txt", "right.txt", frames=5)
+    assert got.exit_code == 130
+    assert "of what was under way, left.txt, the older rows stay" in got.stderr
+    assert rows() == {"left.txt": 5}
+    assert [p.name for p in Path("results").rglob(".part*")] == []
 
 
 def test_a_recording_that_goes_on_after_others_has_another_part(

@@ -20,7 +20,10 @@ from click.testing import CliRunner
 from helpers_cli import call, install
 from tactile_graph import Image, provenance
 from tactile_graph.cli import cli
+from tactile_graph.cli.commands import run
 from tactile_graph.cli.endings import words
+from tactile_graph.cli.output.writers import JsonLines, LineFile
+from tactile_graph.errors import UsageError
 from tactile_graph.files import said
 
 pytestmark = pytest.mark.usefixtures("hand_made")
@@ -57,6 +60,15 @@ def test_a_full_disc_ends_a_run_with_whole_lines_and_says_how_many(tmp_path: Pat
     assert "the source ended" not in got.stderr
     note = json.loads((tmp_path / "out.jsonl.meta.json").read_text())
     assert (note["complete"], note["result"]["frames"]) == (False, n)
+
+
+def test_an_older_file_stays_on_a_full_disc_and_is_told(tmp_path: Path) -> None:
+    (tmp_path / "out.jsonl").write_text("older\n")
+    with full_at(4096):
+        got = call("run", "discs", "--frames", 100, "-o", "out.jsonl")
+    assert "error: out.unfinished.jsonl: cannot be written: File too large" in got.stderr
+    assert got.stderr.endswith("and no part of another; the older out.jsonl stays\n")
+    assert (tmp_path / "out.jsonl").read_text() == "older\n"
 
 
 def test_a_note_that_has_no_room_either_hides_nothing(
@@ -108,6 +120,84 @@ def test_what_stands_only_when_it_is_whole_leaves_no_note_of_what_is_not_there(
         got = call("run", "discs", "--frames", 100, "-o", name, *only)
     assert "File too large; the older one stays\n" in got.stderr
     assert (tmp_path / f"{name}.meta.json").read_text() == note
+
+
+def interrupted_at(frame: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    real = run._Run._results
+
+    def results(self: run._Run) -> Iterator[object]:
+        for k, result in enumerate(real(self)):
+            if k == frame:
+                signal.raise_signal(signal.SIGINT)
+            yield result
+
+    monkeypatch.setattr(run._Run, "_results", results)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("ending", "library"),
+    [("csv", ""), ("jsonl", ""), ("parquet", "pyarrow"), ("h5", "h5py"), ("zarr", "zarr")],
+)
+def test_an_older_whole_output_stays_where_a_run_ends_early(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ending: str, library: str
+) -> None:
+    if library:
+        pytest.importorskip(library)
+    name, beside = f"out.{ending}", f"out.unfinished.{ending}"
+    words = ("run", "discs", "-o", name, *(("--only", "footprint") if ending in "h5zarr" else ()))
+
+    def content() -> dict[Path, bytes]:
+        return {p: p.read_bytes() for p in sorted(tmp_path.rglob(f"{name}*/**/*")) if p.is_file()}
+
+    assert call(*words).exit_code == 0
+    before = content()
+    with monkeypatch.context() as patched:
+        interrupted_at(2, patched)
+        got = call(*words)
+    assert got.exit_code == 130
+    assert f"wrote {beside}; the older {name} stays\n" in got.stderr
+    assert content() == before
+    note = json.loads((tmp_path / f"{beside}.meta.json").read_text())
+    assert (note["complete"], note["result"]["frames"]) == (False, 2)
+    assert (tmp_path / beside).exists()
+    assert call(*words).exit_code == 0
+    assert json.loads((tmp_path / f"{name}.meta.json").read_text())["complete"] is True
+
+
+def test_what_a_run_that_ended_early_wrote_is_replaced_by_the_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    interrupted_at(2, monkeypatch)
+    call("run", "discs", "-o", "out.csv")
+    interrupted_at(1, monkeypatch)
+    assert "wrote out.csv\n" in call("run", "discs", "-o", "out.csv").stderr
+    assert len((tmp_path / "out.csv").read_text().splitlines()) == 2
+    assert not (tmp_path / "out.unfinished.csv").exists()
+
+
+def test_frames_that_ctrl_c_alone_ends_replace_an_older_output(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "out.csv").write_text("older\n")
+    monkeypatch.setattr("tactile_graph.cli.many.made_of.device", lambda pipeline: "a port")
+    interrupted_at(2, monkeypatch)
+    assert "wrote out.csv\n" in call("run", "discs", "-o", "out.csv").stderr
+    assert len((tmp_path / "out.csv").read_text().splitlines()) == 3
+
+
+def test_an_older_output_stays_whole_until_the_next_is(tmp_path: Path) -> None:
+    (tmp_path / "out.csv").write_text("older\n")
+    (tmp_path / "out.csv").chmod(0o640)
+    writer = LineFile("out.csv", JsonLines())
+    writer.open().write(b"newer\n")
+    assert (tmp_path / "out.csv").read_text() == "older\n"
+    with pytest.raises(UsageError, match="another run is writing it"):
+        LineFile("out.csv", JsonLines()).open()
+    writer.close()
+    assert (tmp_path / "out.csv").read_text() == "newer\n"
+    assert (tmp_path / "out.csv").stat().st_mode & 0o777 == 0o640
+    assert not (tmp_path / "out.unfinished.csv").exists()
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -111,6 +112,100 @@ def test_sensors_in_a_matlab_variable_of_four_axes_are_told_to_be_saved_alone(
     two = np.stack([OBLONG, OBLONG], axis=1)
     with pytest.raises(DataError, match="save each sensor of 'p' as a new variable"):
         frames_of(write(tmp_path, matlab(p=two)))
+
+
+OWN = {"quantity": "kilopascal", "pitch_cm": np.array([0.5, 0.7]), "origin_cm": np.array([1, 2.0])}
+TIMED = {**OWN, "time_s": np.arange(12) * 0.1}
+
+
+def npz_with(folder: Path) -> Path:
+    return write(folder, npz_bytes(frames=OBLONG, device_time_s=np.arange(12.0) + 9, **TIMED))
+
+
+def matlab_with(folder: Path) -> Path:
+    return write(folder, matlab(frames=OBLONG, **TIMED))
+
+
+def json_with(folder: Path) -> Path:
+    told = {"frames": OBLONG, **TIMED}
+    plain = {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in told.items()}
+    return write(folder, json.dumps(plain))
+
+
+def hdf5_with(folder: Path) -> Path:
+    path = hdf5(folder, OBLONG)
+    with pytest.importorskip("h5py").File(path, "a") as file:
+        for name, value in TIMED.items():
+            file[name] = value
+    return path
+
+
+def hdf5_attributes(folder: Path) -> Path:
+    path = hdf5(folder, OBLONG)
+    with pytest.importorskip("h5py").File(path, "a") as file:
+        file.attrs.update(OWN)
+        file["time_s"] = TIMED["time_s"]
+    return path
+
+
+def hdf5_of_matlab(folder: Path) -> Path:
+    path = hdf5_with(folder)
+    with pytest.importorskip("h5py").File(path, "a") as file:
+        del file["quantity"]
+        file["quantity"] = np.array([[ord(c)] for c in OWN["quantity"]], np.uint16)
+        file["quantity"].attrs["MATLAB_class"] = np.bytes_(b"char")
+    return path
+
+
+def zarr_with(folder: Path) -> Path:
+    library: Any = pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
+    path = zarr(folder, OBLONG)
+    group = library.open_group(str(path), mode="a")
+    group.create_array("time_s", data=TIMED["time_s"])
+    plain = {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in OWN.items()}
+    group.attrs.update({**plain, "ragged": [[1, 2], [3]]})
+    return path
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        npz_with,
+        pytest.param(matlab_with, marks=pytest.mark.slow),  # scipy is slow to import
+        json_with,
+        hdf5_with,
+        hdf5_attributes,
+        hdf5_of_matlab,
+        pytest.param(zarr_with, marks=pytest.mark.slow),
+    ],
+)
+def test_our_own_words_are_taken_whatever_the_stack_is_called(
+    tmp_path: Path, made: Callable[[Path], Path]
+) -> None:
+    frames, _ = frames_of(made(tmp_path))
+    image = frames[0].image
+    assert (image.quantity, image.pitch_cm, image.origin_cm) == ("kilopascal", (0.5, 0.7), (1, 2))
+    assert [f.time_s for f in frames[:2]] == [0.0, 0.1]
+    np.testing.assert_array_equal(image.values, OBLONG[0])
+
+
+@pytest.mark.parametrize(
+    ("told", "quantity", "factor"),
+    [
+        ({"quantity": "kPa"}, "kilopascal", 1.0),
+        ({"quantity": b"volt", "unit": "mV"}, "volt", 1e-3),
+        ({"unit": "mV", "quantity": "volt"}, "volt", 1e-3),
+        ({"quantity": "siemens", "unit": "furlong"}, "siemens", 1.0),
+        ({"quantity": "much"}, "raw", 1.0),
+        ({"quantity": 7}, "raw", 1.0),
+    ],
+)
+def test_a_quantity_is_one_we_know_or_that_of_a_unit(
+    tmp_path: Path, told: dict[str, Any], quantity: str, factor: float
+) -> None:
+    frames, _ = frames_of(write(tmp_path, npz_bytes(frames=OBLONG, **told)))
+    assert frames[0].image.quantity == quantity
+    np.testing.assert_allclose(frames[0].image.values, OBLONG[0] * factor)
 
 
 @pytest.mark.parametrize(
