@@ -144,6 +144,8 @@ class Host:
         self._orders: list[Order] = []
         self._process = Process()
         self._n_made = self._n_restarts = 0
+        self.n_lost = 0
+        """How many calls came to nothing that the step itself gave or raised."""
         self._ended_by = self._broken = ""
 
     @property
@@ -168,6 +170,7 @@ class Host:
 
     def run(self, number: int, args: Any, kwargs: Mapping[str, Any], limit_s: float | None) -> Any:
         """Return what a step gives; raises what `Isolated` does."""
+        self.n_lost += 1
         if self._n_made < len(self._orders):
             self._take_note(0.0)
         self._process.send((number, args, kwargs))
@@ -180,6 +183,7 @@ class Host:
         if kind == ENDED:
             self._start_anew(number, self._process.end_in_words())
             raise CrashedError(f"{self._ended_by}: a new one starts")
+        self.n_lost -= 1
         if kind != MADE and isinstance(value, Exception):
             raise value
         return value

@@ -23,6 +23,7 @@ from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.pipeline.graph import Isolation
 from tactile_graph.plugins.registry import Registry
+from tactile_graph.wires.frame_stack import FrameStack
 
 pytestmark = pytest.mark.slow
 OWN = {
@@ -51,7 +52,6 @@ def run_until_back(runner: Any, number: int, seconds: float = 60.0) -> list[Any]
     end, results = time.monotonic() + seconds, []
     while time.monotonic() < end:
         results.append(runner(frame(number, len(results))))
-        runner.forget()
         if "risky" in results[-1]:
             return results
         time.sleep(0.02)
@@ -84,6 +84,13 @@ def test_a_step_that_crashes_fails_its_node_and_is_started_anew() -> None:
     assert isinstance(outcome, Failed)
     assert "ended its process by SIGKILL: a new one starts" in outcome.reason
     assert run_until_back(runner, 7)[-1]["risky"] == 7
+
+
+def test_frames_equal_to_one_that_it_did_not_answer_are_not_reused_in_blocks_either() -> None:
+    runner = pipeline("step: moody, in: frame, isolated: true").runner()
+    stack = FrameStack.of([frame(steps.CRASHES, i) for i in range(3)])
+    first, second = runner.block(stack), runner.block(stack)
+    assert not [r for r in [*first, *second] if r.reused]
 
 
 def test_no_call_waits_for_a_compiler_which_would_count_for_its_time() -> None:
@@ -227,7 +234,6 @@ def test_a_step_that_ends_the_process_takes_the_state_of_those_beside_it_and_is_
     end = time.monotonic() + 60
     while "sum" not in (result := runner(frame(9, 3))):
         assert time.monotonic() < end
-        runner.forget()
         time.sleep(0.02)
     assert result["sum"][0] == 1
 
