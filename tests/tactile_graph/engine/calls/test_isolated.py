@@ -28,6 +28,7 @@ from tactile_graph.wires.frame_stack import FrameStack
 pytestmark = pytest.mark.slow
 OWN = {
     "moody": steps.moody,
+    "raises": steps.raises,
     "counting": steps.Counting,
     "elsewhere": steps.elsewhere,
     "readiness": kernel_steps.readiness,
@@ -83,6 +84,7 @@ def test_a_step_that_crashes_fails_its_node_and_is_started_anew() -> None:
     outcome = runner(frame(steps.CRASHES)).outcome("risky")
     assert isinstance(outcome, Failed)
     assert "ended its process by SIGKILL: a new one starts" in outcome.reason
+    assert outcome.where == ""  # no line of anybody's
     assert run_until_back(runner, 7)[-1]["risky"] == 7
 
 
@@ -106,6 +108,16 @@ def test_what_the_step_raises_and_prints_comes_through(capfd: pytest.CaptureFixt
     failed = runner(frame(steps.FAILS)).outcome("risky")
     assert (failed.kind, failed.reason) == ("degenerate", "too little")
     assert runner(frame(steps.PRINTS))["risky"] == steps.PRINTS
+
+
+def test_what_a_step_raises_is_told_as_at_home_with_the_line_of_its_code() -> None:
+    at_home = pipeline("step: raises, in: frame").runner()
+    away = pipeline("step: raises, in: frame, isolated: true").runner()
+    for i in range(len(steps.OWN_ERRORS)):
+        one, other = (run(frame(i)).outcome("risky") for run in (at_home, away))
+        assert type(one) is type(other)
+        told = "kind", "reason", "where"
+        assert [getattr(other, t, "") for t in told] == [getattr(one, t, "") for t in told]
 
 
 def test_state_and_random_numbers_are_those_of_the_step_at_home() -> None:
