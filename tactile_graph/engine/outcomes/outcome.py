@@ -56,6 +56,10 @@ class Skipped:
         """Return the same as the outcome of a list's item."""
         return Skipped(self.origin, self._reason, self._values, (i, *self.item))
 
+    def within(self, node: str, i: int) -> Skipped:
+        """Return the same as the outcome of an item that a node ran a pipeline for."""
+        return self.at(f"{node}/{self.origin}" if self.origin else "").of_item(i)
+
     def told_by(self, change: Callable[[Any], Any]) -> Skipped:
         """Return the same with each value that its reason tells changed; itself if it has none."""
         if not self._values:
@@ -124,6 +128,10 @@ class Failed:
         """Return the same as the outcome of a list's item."""
         item = (i, *self.item)
         return Failed(self.origin, self.error, self.where, self.inputs, self.step, item)
+
+    def within(self, node: str, i: int) -> Failed:
+        """Return the same as the outcome of an item that a node ran a pipeline for."""
+        return self.at(f"{node}/{self.origin}" if self.origin else "").of_item(i)
 
     def __reduce__(self) -> tuple[type[Failed], tuple[Any, ...]]:
         """Pickle with an error of the same words, where the error itself is not to be pickled."""
