@@ -5,9 +5,10 @@ from __future__ import annotations
 import dataclasses
 import types
 from collections.abc import Iterator, Mapping
-from typing import Any, Union, get_args, get_origin, get_type_hints
+from enum import Enum
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
-from tactile_graph.steps.signature import list_item, strip
+from tactile_graph.steps.signature import list_item, strip, type_name
 
 Place = tuple[str | int, ...]
 
@@ -77,6 +78,22 @@ def members(annotation: Any) -> list[Any]:
     if get_origin(bare) not in (Union, types.UnionType):
         return [bare]
     return [m for arm in get_args(bare) for m in members(arm)]
+
+
+def written_type(annotation: Any, within: tuple[Any, ...] = ()) -> str:
+    """Return a setting's type as a file may give it: ``'red' | 'blue'``, ``{a: int, b: str}``."""
+    bare, _ = strip(annotation)
+    if isinstance(bare, type) and issubclass(bare, Enum):
+        return " | ".join(repr(member.value) for member in bare)
+    inside = (*within, bare)
+    if get_origin(bare) in (Union, types.UnionType):
+        return " | ".join(written_type(arm, inside) for arm in get_args(bare))
+    if bare not in within and (known := fields(bare)):
+        return f"{{{', '.join(f'{n}: {written_type(k, inside)}' for n, k in known.items())}}}"
+    if get_origin(bare) in (None, Literal) or not get_args(bare):
+        return type_name(bare)
+    told = ("..." if k is Ellipsis else written_type(k, inside) for k in get_args(bare))
+    return f"{type_name(get_origin(bare))}[{', '.join(told)}]"
 
 
 def key_of(annotation: Any) -> Any:

@@ -526,6 +526,7 @@ def test_the_text_of_an_error_shows_place_words_and_line(reg: Any) -> None:
         ),
         ("f.level_v", "node 'f' is no step and has no settings"),
         ("m/x.level_v", "no node named 'm/x'"),
+        ("m.model.a.b", "a setting is given whole: m.model={a: {b: -1}}"),
         ("u/q.level_v", "setting q.level_v: no node named 'q'"),
     ],
 )
@@ -586,6 +587,11 @@ def test_a_file_may_use_and_evolve_from_its_neighbour(reg: Any, tmp_path: Path) 
         "pipeline: next\nevolves: inner.yaml\nnodes: {u: {use: inner.yaml}}\noutputs: [u.m]\n"
     )
     assert list(load(tmp_path / "next.yaml", reg).nodes) == ["u/m", "u/n", "u.m", "u.n"]
+
+
+def test_a_pipeline_may_use_another_of_its_own_name(reg: Any) -> None:
+    text = text_of("m: {use: inner}", "outputs: [m.m]").replace("pipeline: p", "pipeline: inner")
+    assert "m/m" in loads(text, "mine.yaml", reg).nodes
 
 
 def test_a_file_that_uses_itself_under_another_name_is_a_circle(reg: Any, tmp_path: Path) -> None:
