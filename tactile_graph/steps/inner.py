@@ -11,6 +11,8 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 from tactile_graph.steps.signature import list_item, strip, type_name
 
 Place = tuple[str | int, ...]
+LONGEST = 100
+"""Characters that tell the fields of a record with their types; of a longer one the names do."""
 
 
 def fields(annotation: Any) -> dict[str, Any]:
@@ -89,11 +91,12 @@ def written_type(annotation: Any, within: tuple[Any, ...] = ()) -> str:
     if get_origin(bare) in (Union, types.UnionType):
         return " | ".join(written_type(arm, inside) for arm in get_args(bare))
     if bare not in within and (known := fields(bare)):
-        return f"{{{', '.join(f'{n}: {written_type(k, inside)}' for n, k in known.items())}}}"
+        told = ", ".join(f"{n}: {written_type(k, inside)}" for n, k in known.items())
+        return f"{{{told if len(told) <= LONGEST else ', '.join(known)}}}"
     if get_origin(bare) in (None, Literal) or not get_args(bare):
         return type_name(bare)
-    told = ("..." if k is Ellipsis else written_type(k, inside) for k in get_args(bare))
-    return f"{type_name(get_origin(bare))}[{', '.join(told)}]"
+    items = ("..." if k is Ellipsis else written_type(k, inside) for k in get_args(bare))
+    return f"{type_name(get_origin(bare))}[{', '.join(items)}]"
 
 
 def key_of(annotation: Any) -> Any:

@@ -333,7 +333,7 @@ class ManyRun:
         name = self.asked.output.name
         if self.interrupted is None and self.error is None:
             text = "" if name == "-" else f"wrote {name}"
-        elif self.unfinished is not None:
+        elif self.unfinished is not None and self.low > self.asked.span.start:
             text = f"{self.n_kept} frames are kept: --resume goes on with {name}"
         else:
             text = ""

@@ -7,7 +7,7 @@ import pickle
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from tactile_graph.errors import Degenerate, Skip, text_of
 
@@ -164,6 +164,7 @@ def _told(name: str, kind: type[Exception], text: str) -> Exception:
     return made
 
 
+ErrorT = TypeVar("ErrorT", bound=BaseException)
 _CORE = str(Path(__file__).parents[2]) + os.sep
 
 Outcome = Any
@@ -247,7 +248,7 @@ def _describe(value: Any) -> str:
 _THERE = "_tactile_graph_raised_at"
 
 
-def raised_there(error: Exception, where: str) -> Exception:
+def raised_there(error: ErrorT, where: str) -> ErrorT:
     """Return an error with what `raised_at` is to say of it; "" for no line of anybody's."""
     with suppress(AttributeError):  # it takes none: the line at which it came is told
         setattr(error, _THERE, where)
