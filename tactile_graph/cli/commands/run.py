@@ -448,10 +448,11 @@ class _Run:
             say.print(f"not shown, for want of width: {names}; -o gives them", style="dim",
                       soft_wrap=True)  # fmt: skip
         if self.form_of_table is not None and self.written:
-            from tactile_graph.engine.tables.table import without_one_unit
+            from tactile_graph.engine.tables.table import without_columns, without_one_unit
 
             several = without_one_unit(self.form_of_table, self.quantities)
-            say.print(several, style="yellow", soft_wrap=True) if several else None
+            for text in filter(None, (several, without_columns(self.columns))):
+                say.print(text, style="yellow", soft_wrap=True)
         written = self.output.name if self.written and self.output is not None else None
         for name in (written, self.plot if drawn else None):
             if name not in (None, "-"):
