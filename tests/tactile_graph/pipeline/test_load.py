@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import re
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 import pytest
 from annotated_types import Ge, Gt, Len, MultipleOf
 
@@ -686,3 +688,16 @@ def test_a_name_is_looked_for_as_no_file() -> None:
     with files_read(found), pytest.raises(UsageError, match="no pipeline named"):
         load("nothing")
     assert not [path for path, stamp in found.items() if stamp is None]
+
+
+def test_a_script_gives_steps_of_its_own_by_name(reg: Any) -> None:
+    def mine(image: Image, *, gain: float = 2.0) -> float:
+        return gain * image.peak
+
+    text = "pipeline: p\nnodes: {a: {step: mine, in: frame}}\noutputs: [a]"
+    p = loads(text, steps={"mine": mine})
+    assert [r["a"] for r in p.with_settings({"a.gain": 3}).stream([np.ones((2, 2))])] == [3.0]
+    with pytest.raises(UsageError, match="registry of its own, or steps: not to be pickled"):
+        pickle.dumps(p)
+    with pytest.raises(UsageError, match="steps: a registry is given"):
+        loads(text, registry=reg, steps={"mine": mine})
