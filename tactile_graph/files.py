@@ -205,6 +205,18 @@ def looked_for(name: Name) -> None:
     sys.audit(LOOKED_FOR, os.fspath(name))
 
 
+def not_a_path(name: str) -> str:
+    """Return why a name that a person gave is no path of a file, as a sentence's end; or ""."""
+    if re.match(r"[a-z][a-z0-9+.-]+:/", name, re.I):
+        return "; it is an address, and only files of this machine are read: download it first"
+    if name.startswith("~"):
+        whole = os.path.expanduser(name)
+        return f"; a shell puts the home folder in for ~ where it is not quoted: {whole}"
+    if any(sign in name for sign in "*?["):
+        return "; no file fits this pattern, or it is quoted: a shell then leaves it as it stands"
+    return ""
+
+
 def check_target(option: str, name: Name) -> None:
     """Refuse a file that could not be written in the end, before the work.
 

@@ -78,3 +78,12 @@ def words_and_unit(name: str) -> tuple[str, str]:
                 return words.replace("_", " "), ""
             return head.replace("_", " "), unit
     return name.replace("_", " "), ""
+
+
+def error_name(measure: str) -> str:
+    """Return the name of a measure's error: ``pressure_error_n_cm2`` of ``pressure_n_cm2``."""
+    words, _ = words_and_unit(measure)
+    head, unit = measure[: len(words)], measure[len(words) + 1 :]
+    if not unit:
+        head, _, unit = measure.rpartition("_")
+    return f"{head}_error_{unit}"

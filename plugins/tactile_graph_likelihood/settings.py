@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
 
-from tactile_graph.steps import Quantity
+from tactile_graph.steps import Grid, Quantity
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.single.any_pressure import AnyPressure
 from tactile_graph_likelihood.single.model import Model
@@ -21,7 +21,9 @@ Share = Annotated[float, Gt(0), Lt(1)]
 Part = Literal["sigma", "voids", "foam", "fall", "lean"]
 ON_PAD = {"whole": 1.0, "mostly": 0.99, "partly": 0.0}
 """Probability, before a frame is read, that the whole outline lies on the pad."""
-Load = Annotated[Image, Quantity("gram", "kilopascal", "raw", "counts", "level")]
+Load = Annotated[
+    Image, Quantity("gram", "kilopascal", "raw", "counts", "level"), Grid(square_to=0.0)
+]
 
 
 @dataclass(frozen=True)

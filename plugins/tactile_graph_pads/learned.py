@@ -14,8 +14,9 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
-from tactile_graph.errors import DataError, one_of, shown
+from tactile_graph.errors import DataError, RuleError, one_of, shown
 from tactile_graph.files import write_whole
+from tactile_graph.wires import Image
 
 Array = NDArray[np.float64]
 Reading = Literal["counts", "volt", "siemens", "gram", "kilopascal", "raw", "level"]
@@ -24,6 +25,10 @@ GOOD = "good"
 STATES = (GOOD, "dead", "stuck", "noisy", "missing")
 """Of an element: as it should be; silent under loads, or without any noise; loaded when nothing
 lies on it; scattering far more than the others; never read at all."""
+ASSUMED_PITCH_CM = (1.0, 1.0)
+"""What images have whose recording says no pitch, which tells nothing."""
+SAME_PITCH = 1e-3
+"""Share by which pitches of one pad may differ, as rounded."""
 COLUMNS = ("row", "column", "offset", "noise", "gain", "state")
 
 
@@ -133,6 +138,23 @@ class Learned:
         """Return the same with its files named from a folder on."""
         place = str(folder / self.place) if self.place else ""
         return replace(self, elements=str(folder / self.elements), place=place)
+
+    def require_pitch(self, image: Image) -> None:
+        """Refuse an image of another pitch than that of the recordings; an assumed one is none.
+
+        Raises
+        ------
+        RuleError
+        """
+        mine, its = self.pitch_cm, image.pitch_cm
+        if mine == its or ASSUMED_PITCH_CM in (mine, its):
+            return
+        if any(abs(a - b) > SAME_PITCH * a for a, b in zip(mine, its, strict=True)):
+            raise RuleError(
+                f"the pad was learned at a pitch of {mine[0]:g} x {mine[1]:g} cm, got "
+                f"{its[0]:g} x {its[1]:g} cm: take the pad that was learned from such recordings, "
+                "or say pitch_cm where the recording is wrong"
+            )
 
     @cached_property
     def table(self) -> Elements:

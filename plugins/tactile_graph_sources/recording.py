@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 from annotated_types import Ge, Gt
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
-from tactile_graph.files import sha256_of
+from tactile_graph.files import not_a_path, sha256_of
 from tactile_graph.quantities import QuantityName
 from tactile_graph.steps import Quantity, Report
 from tactile_graph.wires import Frame
@@ -239,8 +239,11 @@ def _check_file(path: Path) -> None:
         raise DataError(str(path), "is no plain file; save what it gives as a file first")
     if path.is_symlink():
         raise DataError(str(path), f"is a link to {os.readlink(path)}, which is not there")
+    if str(path) == "-":
+        raise DataError("-", "is no file; save what standard input gives as a file first")
     siblings = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
-    raise DataError(str(path), f"there is no such file{did_you_mean(path.name, siblings)}")
+    hint = not_a_path(str(path)) or did_you_mean(path.name, siblings)
+    raise DataError(str(path), f"there is no such file{hint}")
 
 
 def _no_recording(folder: Path) -> DataError:

@@ -9,7 +9,7 @@ from pathlib import Path
 from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
-from tactile_graph.errors import PipelineError, Problem, UsageError
+from tactile_graph.errors import PipelineError, Problem, UsageError, one_of
 from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.load import load_graph, parse_graph, resolve_again
 from tactile_graph.pipeline.resolve import SourceOverride
@@ -159,6 +159,8 @@ class Pipeline(Graph):
         seed: int = 0,
     ) -> Results:
         """Return the results of the frames, in order, as they are taken; stateful steps keep state.
+
+        Frames of another label (of another recording or sensor) find none of it.
 
         Parameters
         ----------
@@ -336,7 +338,10 @@ class Pipeline(Graph):
         for name, value in settings.items():
             node, dot, setting = name.rpartition(".")
             if not dot:
-                raise PipelineError([Problem(None, f"setting {name!r}: it is named node.setting")])
+                meant = [f"{n}.{name}" for n, node in self.nodes.items() if name in node.settings]
+                hint = f"; did you mean {one_of(meant, 5)}?" if meant else ""
+                told = f"setting {name!r}: it is named node.setting{hint}"
+                raise PipelineError([Problem(None, told)])
             overrides.setdefault(node, {})[setting] = value
         return self._again(overrides, source or self.source_override)
 

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -19,6 +20,7 @@ from tactile_graph.cli.completions import (
     complete_with,
     is_source,
 )
+from tactile_graph.cli.named_files import is_there
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
 
@@ -199,6 +201,7 @@ def source_named(
         step = found.spelled("steps", step)
     base: dict[str, Any] = {}
     if recordings:
+        _refuse_no_recordings(pipeline, recordings)
         step, setting = _reader(step, recordings)
         base = {setting: recordings[0] if len(recordings) == 1 else list(recordings)}
     elif step is None:
@@ -217,6 +220,21 @@ def source_named(
         return None
     _check_source(step, base, bool(recordings))
     return step, base
+
+
+def _refuse_no_recordings(pipeline: Pipeline, words: Sequence[str]) -> None:
+    """Refuse words that stand where recordings do, and are a pipeline or a setting."""
+    for word in words:
+        node, _, setting = word.partition("=")[0].rpartition(".")
+        if is_there(Path(word)):
+            continue
+        if registry.installed().has("pipelines", word):
+            raise UsageError(
+                f"{word!r} is a pipeline, and no recording is called so; {pipeline.name!r} stands"
+                " before it already, and one is run at a time"
+            )
+        if "=" in word and node in pipeline.nodes and setting:
+            raise UsageError(f"{word!r} is no recording; a setting is given by --set {word}")
 
 
 def _reader(step: str | None, recordings: Sequence[str]) -> tuple[str, str]:

@@ -83,8 +83,10 @@ def settings_text(before: str | None, files: Iterable[Path]) -> str:
         what to add.
     """
     added = {f"./{schema_of(f).as_posix()}": [f.as_posix()] for f in files}
+    mark = "\ufeff" if before and before.startswith("\ufeff") else ""
+    plain = (before or "{}").removeprefix(mark)
     try:
-        held = {} if before is None else json.loads(before, object_pairs_hook=_each_once)
+        held = json.loads(plain, object_pairs_hook=_each_once)
         if not isinstance(held, dict) or not isinstance(held.get(SCHEMAS, {}), dict):
             raise ValueError(f"no object, or {SCHEMAS!r} in it is none")
     except ValueError as error:
@@ -95,7 +97,8 @@ def settings_text(before: str | None, files: Iterable[Path]) -> str:
         ) from None
     indent = re.search(r'^([ \t]+)"', before or "", re.M)
     merged = {**held, SCHEMAS: {**held.get(SCHEMAS, {}), **added}}
-    return json.dumps(merged, indent=indent[1] if indent else 4, ensure_ascii=False) + "\n"
+    text = json.dumps(merged, indent=indent[1] if indent else 4, ensure_ascii=False)
+    return f"{mark}{text}\n"
 
 
 def _each_once(pairs: Sequence[tuple[str, Any]]) -> dict[str, Any]:

@@ -105,6 +105,8 @@ def show(error: BaseException, debug: bool = False) -> None:
         from tactile_graph.cli.terminal import console
 
         show_problems(console(stderr=True), error)
+    elif isinstance(error, click.exceptions.NoArgsIsHelpError):  # what it says is no error
+        say(error.format_message(), err=True)
     elif isinstance(error, click.UsageError):
         _line(error.format_message())
         if error.ctx is not None:

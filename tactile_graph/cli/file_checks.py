@@ -33,7 +33,12 @@ def show_checked(out: Console, name: str, checked: Checked, repair: bool) -> boo
         out.print(Text.assemble(("  mended  ", "green"), text), soft_wrap=True)
     for text in checked.wrong:
         out.print(Text.assemble(("  wrong   ", "red"), text), soft_wrap=True)
+    for text in checked.left:
+        out.print(Text.assemble(("  left    ", "yellow"), text), soft_wrap=True)
     if not right:
         hint = "this cannot be mended" if repair else "--repair mends what can be"
+        out.print(Text(f"  {hint}", style="dim"), soft_wrap=True)
+    elif checked.left:
+        hint = "a writer was cut short; what the file holds is whole, and --repair clears this away"
         out.print(Text(f"  {hint}", style="dim"), soft_wrap=True)
     return right

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from difflib import get_close_matches
+from pathlib import Path
 from typing import Any
 
 import click
 
 from tactile_graph.cli import endings, shared
+from tactile_graph.cli.named_files import is_there
 from tactile_graph.cli.say import say
 from tactile_graph.errors import TactileGraphError, did_you_mean, one_of
 from tactile_graph.plugins import registry
@@ -24,6 +26,44 @@ def _preparing_told(ctx: click.Context) -> AbstractContextManager[None]:
     from tactile_graph.compiled.preparing import Line, told_by
 
     return told_by(Line())
+
+
+def _options(command: click.Command, ctx: click.Context) -> list[str]:
+    """Return how a command's options are spelled."""
+    return [text for option in command.get_params(ctx) for text in option.opts]
+
+
+def _is_pipeline(name: str) -> bool:
+    return registry.installed().has("pipelines", name) or name.endswith((".yaml", ".yml"))
+
+
+@contextmanager
+def _told_of_options(given: Sequence[str]) -> Iterator[None]:
+    """Have it told what may be meant by an option that is not there."""
+    try:
+        yield
+    except click.NoSuchOption as error:
+        hint = _misplaced(error, given)
+        if not hint:
+            raise
+        raise click.UsageError(error.format_message().rstrip(".") + hint, error.ctx) from error
+
+
+def _misplaced(error: click.NoSuchOption, given: Sequence[str]) -> str:
+    """Return what may be meant by an option that a command has not: another place, two hyphens."""
+    ctx = error.ctx
+    if ctx is None:
+        return ""
+    for word in given:
+        if not word.startswith("--") and f"-{word}" in _options(ctx.command, ctx):
+            return f"; did you mean '-{word}'?"
+    if isinstance(ctx.command, Group):
+        names = ctx.command.list_commands(ctx)
+        name = next((word for word in given if word in names), None)
+        if name is not None:
+            spelled = f"{ctx.command_path} {name} {error.option_name} …"
+            return f"; a command's options stand behind it: '{spelled}'"
+    return ""
 
 
 class Group(click.Group):
@@ -72,13 +112,29 @@ class Group(click.Group):
         """Return the command the first argument names, or say what is near it."""
         name = args[0]
         if self.get_command(ctx, name) is None and not name.startswith("-"):
-            names = self.list_commands(ctx)
-            hint = did_you_mean(name, names) or self._about(name)
-            hint = hint or f"; there are: {one_of(names, 30)}"
-            if registry.installed().has("pipelines", name) or name.endswith((".yaml", ".yml")):
-                hint = f"; a pipeline is run by '{ctx.info_name} run {name}'"
-            ctx.fail(f"no command named {name!r}{hint}")
+            ctx.fail(f"no command named {name!r}{self._meant(ctx, args)}")
         return super().resolve_command(ctx, args)
+
+    def _meant(self, ctx: click.Context, args: list[str]) -> str:
+        """Return what somebody may have meant who typed no command."""
+        name, names, program = args[0], self.list_commands(ctx), ctx.info_name
+        if f"--{name}" in _options(self, ctx):
+            of = f"{args[1]} " if args[1:] and args[1] in names else ""
+            return f"; it is an option: '{program} {of}--{name}'"
+        if _is_pipeline(name):
+            return f"; a pipeline is run by '{program} run {name}'"
+        if self._is_recording(name):
+            pipeline = next(filter(_is_pipeline, args), "PIPELINE")
+            return f"; a pipeline is run over recordings by '{program} run {pipeline} {name}'"
+        missing = registry.installed().missing_plugins()
+        near = did_you_mean(name, names) or ("" if missing else self._about(name))
+        return (near or f"; there are: {one_of(names, 30)}") + missing
+
+    def _is_recording(self, name: str) -> bool:
+        """Return whether a word is called as files are, and no command of any plugin."""
+        plugins = [plugin.name for plugin in registry.installed().plugins]
+        ending = Path(name).suffix and name.partition(".")[0] not in plugins
+        return is_there(Path(name)) or "/" in name or bool(ending)
 
     def _about(self, word: str) -> str:
         """Return which command says that it is about such a thing, or an empty text."""
@@ -98,6 +154,10 @@ class Group(click.Group):
         if offered:
             with formatter.section("Commands of plugins"):
                 formatter.write_dl(offered)
+        down = [(p.name, p.error) for p in registry.installed().plugins if p.error]
+        if down:
+            with formatter.section("Plugins that failed to load, commands of theirs with them"):
+                formatter.write_dl(down)
 
     def _summary(self, name: str) -> str:
         from tactile_graph.plugins.outline import summary_of
@@ -138,7 +198,8 @@ class Group(click.Group):
 
         def run() -> Any:
             try:
-                return inner(given, prog_name or "tactile-graph", complete_var, False, **extra)
+                with _told_of_options(given):
+                    return inner(given, prog_name or "tactile-graph", complete_var, False, **extra)
             except (click.ClickException, TactileGraphError):
                 if not completing:
                     raise

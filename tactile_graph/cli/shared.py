@@ -9,11 +9,14 @@ from tactile_graph.plugins import registry
 
 
 def add_options(command: click.Command) -> None:
-    """Give a command the shared options unless it has its own of that name."""
+    """Give a command, and those within it, the shared options where it has none of its own so."""
     taken = {name for p in command.params for name in p.opts}
     for option in (_plugins(), _debug()):
         if not taken & set(option.opts):
             command.params.append(option)
+    if isinstance(command, click.Group):
+        for within in command.commands.values():
+            add_options(within)
 
 
 def _plugins() -> click.Option:

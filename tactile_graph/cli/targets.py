@@ -79,6 +79,10 @@ def _refuse(option: str, name: str, one: _Input) -> None:
         raise UsageError(
             f"{option} {name}: would overwrite {part}{one.what}{by}; name another file"
         )
+    if one.what == READ and one.with_all_in_it and _would_be_of(name, one.path):
+        raise UsageError(
+            f"{option} {name}: would be a part of {one.what} ({one.path}); name a file elsewhere"
+        )
 
 
 def _of_command_line(outputs: set[str], names: set[str]) -> Iterator[_Input]:
@@ -136,6 +140,14 @@ def _same(one: Name, other: Name) -> bool:
         return os.path.samefile(one, other)
     except (OSError, ValueError):
         return os.path.realpath(one) == os.path.realpath(other)
+
+
+def _would_be_of(name: str, folder: Path) -> bool:
+    """Return whether a file would be one more of a folder's, with the ending that others have."""
+    path = Path(name)
+    if not folder.is_dir() or path.resolve().parent != folder.resolve():
+        return False
+    return path.suffix.lower() in {p.suffix.lower() for p in folder.iterdir() if p.is_file()}
 
 
 def _is_in(name: str, folder: Path) -> bool:

@@ -81,6 +81,11 @@ class Preparing:
         self._spent_s = 0.0
         self._since = 0.0
 
+    @property
+    def spent_s(self) -> float:
+        """Time that was spent on it since the clock was started, waiting for others included."""
+        return self._spent_s
+
     def start_clock(self) -> None:
         """Count the time spent from now on."""
         self._spent_s = 0.0

@@ -87,7 +87,7 @@ def result_table(result: Outcomes) -> Table:
     """Return a table of a frame's nodes: state, time, and the value or why there is none."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("node", style="bold", no_wrap=True)
-    table.add_column("step", style="dim")
+    table.add_column("step", style="dim", overflow="fold")
     table.add_column("state", no_wrap=True)
     table.add_column("µs", justify="right", no_wrap=True)
     table.add_column("value, or why there is none", overflow="fold")

@@ -27,6 +27,7 @@ from tactile_graph.engine.program import make_program
 from tactile_graph.errors import Degenerate, RuleError, UsageError
 from tactile_graph.pipeline.facts import quantity_trouble
 from tactile_graph.pipeline.graph import FrameRule, Graph, Node
+from tactile_graph.steps.rules import square_wanted
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph.wires.image import Image
@@ -70,6 +71,8 @@ class RunSettings:
 
 class Runner(Generic[ResultT]):
     """Call it with a frame, get the result; stateful steps keep their state between calls.
+
+    They keep one for each label: frames of another recording or sensor find none of its state.
 
     Parameters
     ----------
@@ -121,7 +124,8 @@ class Runner(Generic[ResultT]):
         self._n_lost = 0
         self._shape: tuple[int, ...] = ()
         self._quantity = ""
-        # Rules about numbers (shape, pitch) are rare: where there are any, every frame is checked.
+        self._pitch_cm = (0.0, 0.0)
+        # Where there are rules about numbers, a frame of another pitch is checked, too.
         self._rules = any(r.quantity is None for r in self.plan.rules)
         _make_room(self.plan.depth)
 
@@ -129,6 +133,11 @@ class Runner(Generic[ResultT]):
     def stateful(self) -> bool:
         """Whether a step keeps something from frame to frame."""
         return self.plan.stateful
+
+    @property
+    def n_states(self) -> int:
+        """Of how many labels, of recordings and sensors, steps have kept a state so far."""
+        return len(self._context.labels)
 
     def repeats(self, frame: Frame) -> bool:
         """Return whether the frame would reuse the last one's result."""
@@ -232,7 +241,11 @@ class Runner(Generic[ResultT]):
                 f"a runner takes frames, got {type(frame).__name__}; Frame.of(values) makes one"
             ) from None
         values = image.values
-        if values.shape != self._shape or image.quantity != self._quantity or self._rules:
+        if (
+            values.shape != self._shape
+            or image.quantity != self._quantity
+            or (self._rules and image.pitch_cm != self._pitch_cm)
+        ):
             self._check(image)
         if self._repeatable:
             content = values.tobytes()
@@ -270,6 +283,7 @@ class Runner(Generic[ResultT]):
     def _check(self, image: Image) -> None:
         check_frame(image, self.plan)
         self._shape, self._quantity = image.values.shape, image.quantity
+        self._pitch_cm = image.pitch_cm
 
     def _settle(self, state: list[Any], operations: list[Operation]) -> None:
         context = self._context
@@ -301,7 +315,11 @@ class Runner(Generic[ResultT]):
         """
         images = frames.images
         n = len(frames)
-        if images.shape[1:] != self._shape or images.quantity != self._quantity or self._rules:
+        if (
+            images.shape[1:] != self._shape
+            or images.quantity != self._quantity
+            or (self._rules and images.pitch_cm != self._pitch_cm)
+        ):
             self._check(images[0])
         last = self._last
         of, before = np.arange(n), None
@@ -467,6 +485,12 @@ def _broken(rule: FrameRule, image: Image) -> str:
     pitch = rule.pitch_cm
     if pitch is not None and any(abs(p - pitch) > 1e-6 * pitch for p in image.pitch_cm):
         return f"step {rule.step!r} takes a pitch of {pitch} cm, got a frame of {image.pitch_cm} cm"
+    if rule.square_to is not None and (wanted := square_wanted(image, rule.square_to)):
+        across, down = image.pitch_cm
+        return (
+            f"step {rule.step!r} takes {wanted}, got a frame with a pitch of {across:g} by "
+            f"{down:g} cm"
+        )
     return ""
 
 

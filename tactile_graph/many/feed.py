@@ -150,7 +150,7 @@ class Feed:
             while low < end:
                 size = n if whole else self._whole_chunks(low, stop, n_workers, ranges.together)
                 high = min(low + size, end)
-                yield Portion(low, high, start=low if whole else self.start)
+                yield Portion(low, high, start=low if whole else max(start, self.start))
                 low = high
             start += n
 

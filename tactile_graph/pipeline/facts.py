@@ -270,7 +270,8 @@ def _grid_trouble(
     try:
         return None, coarser(
             FrameRule(node.name, port, step, dict.fromkeys(node.facts.by_frame, ""), None,
-                      rule.rows, rule.columns, rule.pitch_cm, rule.min_rows, rule.min_columns),
+                      rule.rows, rule.columns, rule.pitch_cm, rule.min_rows, rule.min_columns,
+                      rule.square_to),
             mine)  # fmt: skip
     except ValueError as error:
         return (port, str(error)), None

@@ -202,6 +202,7 @@ class FrameRule:
     pitch_cm: float | None = None
     min_rows: int = 1
     min_columns: int = 1
+    square_to: float | None = None
     setting: str = ""
     hint: str = ""
 

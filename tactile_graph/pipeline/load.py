@@ -9,7 +9,7 @@ from textwrap import shorten
 from typing import Any, NamedTuple
 
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, did_you_mean
-from tactile_graph.files import looked_for
+from tactile_graph.files import looked_for, not_a_path
 from tactile_graph.pipeline.declaration import declare
 from tactile_graph.pipeline.document import Document, read_document, text_of_file
 from tactile_graph.pipeline.graph import Graph
@@ -78,7 +78,10 @@ def find(name: str | Path, registry: Registry, file: str = "") -> Path:
             return path
         if _is_folder(path):
             raise UsageError(f"{text!r} is a folder; name a file in it")
-        hint = did_you_mean(path.name, _siblings(path))
+        if path.name == text and registry.has("pipelines", path.stem):
+            hint = f"; there is a pipeline named {path.stem!r}"
+        else:
+            hint = not_a_path(text) or did_you_mean(path.name, _siblings(path))
         raise UsageError(f"no pipeline file {text!r}{hint}")
     if not registry.has("pipelines", text):
         if is_file(Path(text)):
@@ -88,6 +91,11 @@ def find(name: str | Path, registry: Registry, file: str = "") -> Path:
             )
         if text and _is_folder(Path(text)):
             raise UsageError(f"{text!r} is a folder; name a file in it")
+        if text == "-":
+            raise UsageError("'-' is no pipeline's name; standard input is /dev/stdin")
+        near = next((f for f in _siblings(Path(text)) if Path(f).stem == text), None)
+        if near and not file:
+            raise UsageError(f"no pipeline named {text!r}; did you mean the file {near!r}?")
         if Path(text).suffix and not file:
             raise UsageError(f"no file {text!r}, and {registry.unknown('pipelines', text)}")
     return registry.path("pipelines", text, file)

@@ -18,6 +18,15 @@ BROKEN = re.compile(
     r"(?:[-+]?[0-9][0-9_]*\.[0-9_]*(?:[eE][-+][0-9]+)?|\.[0-9][0-9_]*(?:[eE][-+][0-9]+)?"
     r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$"
 )
+_ELSEWHERE = {
+    "tag:yaml.org,2002:bool": (re.compile("[yYnN]$"), "yYnN"),
+    _INT: (re.compile("0o[0-7]+$"), "0"),
+    _FLOAT: (
+        re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+\.?[0-9]*)(?:[eE][-+]?[0-9]+)?$"),
+        "-+.0123456789",
+    ),
+}
+"""What PyYAML takes for texts, and other readers of 1.1 or 1.2 do not."""
 _BASES = {"0b": 2, "0o": 8, "0x": 16}
 
 
@@ -55,6 +64,15 @@ Loader.yaml_implicit_resolvers = {
 for _kind in (Loader, _Dumper):
     _kind.add_implicit_resolver(_FLOAT, BROKEN, list("-+0123456789."))
     _kind.add_implicit_resolver(_INT, WHOLE, list("-+0123456789"))
+
+
+def quote_for_all(dumper: Any) -> None:
+    """Have one of PyYAML's dumpers put in quotes what any reader takes for other than a text."""
+    for tag, (words, first) in _ELSEWHERE.items():
+        dumper.add_implicit_resolver(tag, words, list(first))
+
+
+quote_for_all(_Dumper)
 
 
 def in_yaml(value: Any, **options: Any) -> str:

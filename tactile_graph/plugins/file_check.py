@@ -18,11 +18,14 @@ class Checked(NamedTuple):
         What is wrong with it, and still is where it could not be mended.
     mended : tuple of str
         What was wrong and is right now.
+    left : tuple of str
+        What a writer that was cut short left behind, and what the file holds does not suffer from.
     """
 
     about: str
     wrong: tuple[str, ...] = ()
     mended: tuple[str, ...] = ()
+    left: tuple[str, ...] = ()
 
 
 class FileCheck(NamedTuple):

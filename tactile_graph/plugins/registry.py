@@ -237,11 +237,12 @@ class Registry:
     def missing_plugins(self) -> str:
         """Return the words that say which plugins offer nothing, and why; "" if all do."""
         text = ""
-        for what, names in (
-            ("failed to load", [p.name for p in self.plugins if p.error]),
-            ("blocked", [p.name for p in self.plugins if p.blocked]),
-        ):
-            text += f" (plugins {what}: {', '.join(names)})" if names else ""
+        for what, names, more in (
+            ("failed to load", [p.name for p in self.plugins if p.error],
+             "; 'tactile-graph plugins' says why"),
+            ("blocked", [p.name for p in self.plugins if p.blocked], ""),
+        ):  # fmt: skip
+            text += f" (plugins {what}: {', '.join(names)}{more})" if names else ""
         return text
 
     def reader(self) -> str | None:

@@ -3,7 +3,7 @@
 A keyword-only parameter annotated ``np.random.Generator`` receives a generator seeded for the
 run, the step and the frame; one annotated `Report` receives the run's report (sources only);
 one annotated `TimeGap` (``__call__`` of a stateful step only) receives the true time since the
-step last ran.
+step last ran on a frame of the same label.
 """
 
 from __future__ import annotations

@@ -46,7 +46,8 @@ class Grid:
     """Shape and pitch of an image.
 
     On a port: ``Grid.like("other")`` demands the same grid as another port's; ``Grid(rows=16)``,
-    ``Grid(pitch_cm=1.3)`` and ``Grid(min_rows=3)`` demand numbers. On a return value:
+    ``Grid(pitch_cm=1.3)`` and ``Grid(min_rows=3)`` demand numbers, ``Grid(square_to=0.03)`` cells
+    whose sides differ by that share of the longer at most. On a return value:
     ``Grid.like("image", finer_by="factor")`` says that each cell became factor x factor cells,
     where ``finer_by`` is a number or the name of a setting.
     """
@@ -56,6 +57,7 @@ class Grid:
     pitch_cm: float | None = None
     min_rows: int = 1
     min_columns: int = 1
+    square_to: float | None = None
     port: str = ""
     finer_by: str | int = 1
 
@@ -85,6 +87,34 @@ class GridFact:
             None if self.columns is None else self.columns * factor,
             None if pitch is None else (pitch[0] / factor, pitch[1] / factor),
         )
+
+
+ROUNDING = 1e-9
+"""Of a cell's longer side, by which numbers may have been rounded."""
+
+
+def square_wanted(image: Image | Mask, to: float) -> str:
+    """Return the words for cells that are square to a share of the longer side; none if they are.
+
+    See `Grid`; a share of 0 allows for rounding alone.
+    """
+    across, down = image.pitch_cm
+    if abs(across - down) <= (to + ROUNDING) * max(across, down):
+        return ""
+    return f"cells that are square to {to:.0%}" if to else "square cells"
+
+
+def require_square(image: Image | Mask, to: float = 0.0) -> None:
+    """Refuse an image whose cells are not square to a share of the longer side.
+
+    Raises
+    ------
+    RuleError
+        With the pitch.
+    """
+    if wanted := square_wanted(image, to):
+        across, down = image.pitch_cm
+        raise RuleError(f"needs {wanted}, got a pitch of {across:g} by {down:g} cm")
 
 
 def require_same_shape(**images: Image | Mask) -> None:

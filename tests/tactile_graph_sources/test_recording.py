@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -27,6 +28,9 @@ from helpers_recordings import (
     write,
     xsensor_text,
 )
+from tactile_graph import loads
+from tactile_graph.cli import cli
+from tactile_graph.engine.outcomes.outcome import Failed
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
 from tactile_graph.steps.signature import Kind, read_signature
@@ -126,6 +130,10 @@ def test_missing_files_and_directories_are_named(tmp_path: Path) -> None:
     write(tmp_path, b"1,2", "walk.csv")
     with pytest.raises(DataError, match=r"there is no such file; did you mean 'walk.csv'\?"):
         frames_of(tmp_path / "walks.csv")
+    with pytest.raises(DataError, match=r"there is no such file; no file fits this pattern"):
+        frames_of(tmp_path / "*.csv")
+    with pytest.raises(DataError, match="save what standard input gives as a file first"):
+        frames_of(Path("-"))
     with pytest.raises(DataError, match=r"is a directory; give a file in it \(walk.csv\)$"):
         frames_of(tmp_path)
     write(tmp_path, b"1,2", "wander.csv")
@@ -443,3 +451,34 @@ def test_a_film_that_breaks_off_gives_the_whole_frames_before(
     assert name in ("emed", "xsensor") or report.counts["damaged records skipped"] == 1
     for one, other in zip(kept, whole, strict=False):
         np.testing.assert_array_equal(one.image.values, other.image.values)
+
+
+# -- steps that keep state -------------------------------------------------------------------------
+
+TARED = """
+pipeline: tared
+about: readings above the empty pad's
+nodes: {tared: {step: tare, in: frame, with: {n_frames: 2}}}
+outputs: [tared]
+"""
+
+
+def test_each_recording_and_each_sensor_starts_state_anew(tmp_path: Path) -> None:
+    for name, rest in (("a.npz", 100.0), ("b.npz", 300.0)):
+        values = rest + np.array([0.0, 0.0, 7.0])[:, None, None] * np.ones((3, 4, 4))
+        write(tmp_path, npz_bytes(values=values, pitch_cm=np.array([1.0, 1.0])), name)
+    mats = {"LF": np.full((3, 6, 5), 10.0), "RF": np.full((3, 4, 5), 30.0)}
+    write(tmp_path, xsensor_text(mats), "x.csv")
+    pipeline = loads(TARED).with_source("recording", path=[tmp_path / "a.npz", tmp_path / "b.npz"])
+    results = [r["tared"].peak for r in pipeline.stream() if "tared" in r]
+    assert results == [0.0, 7.0, 0.0, 7.0]
+    of_sensors = [*pipeline.with_source("recording", path=tmp_path / "x.csv").stream()]
+    assert [r["tared"].peak for r in of_sensors if "tared" in r] == [0.0] * 4
+    assert not any(isinstance(r.outcome("tared"), Failed) for r in of_sensors)
+
+
+def test_recordings_of_one_frame_are_told_of_where_steps_keep_state(tmp_path: Path) -> None:
+    (tmp_path / "tared.yaml").write_text(TARED)
+    names = [str(write(tmp_path, flat_text(blobs(1, 8, 8)), f"f{i}.csv")) for i in (1, 2)]
+    got = CliRunner().invoke(cli, ["run", str(tmp_path / "tared.yaml"), *names])
+    assert "began anew with each of 2 recordings of one frame" in " ".join(got.output.split())

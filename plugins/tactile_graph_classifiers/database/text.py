@@ -20,7 +20,18 @@ BEGINS_WITHIN = 10_000
 """Characters within which an export says that it is one."""
 _LONG_NUMBER = re.compile(r"[0-9a-fA-F_:.]{1000}")
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-_Dumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+_Base: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+
+
+class _Dumper(_Base):  # type: ignore[misc]
+    """PyYAML's fast dumper, whose texts every reader of YAML 1.1 and 1.2 takes for texts."""
+
+
+_Dumper.add_implicit_resolver(
+    "tag:yaml.org,2002:float",  # or any but a text's: such a text is put in quotes
+    re.compile(r"[yYnN]$|0o[0-7]+$|[-+]?(?:\.[0-9]+|[0-9]+\.?[0-9]*)(?:[eE][-+]?[0-9]+)?$"),
+    list("yYnN-+.0123456789"),
+)
 _KEYS = {"format", "version", "about", "quantity", "pipeline", "features", "objects"}
 _OBJECT_KEYS = {"name", "shape", "readings", "sources"}
 

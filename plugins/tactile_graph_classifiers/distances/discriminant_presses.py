@@ -34,7 +34,8 @@ class DiscriminantOfPresses:
     presses : int
         How many readings are named together, or as many as there are.
     start_anew_s : float, optional
-        Forget the readings before a gap longer than this: another object may lie there.
+        Forget the readings before a gap longer than this, or where the clock goes back: another
+        object may lie there.
 
     Raises
     ------
@@ -69,7 +70,8 @@ class DiscriminantOfPresses:
         DataError
             If a feature was not measured or is not finite, or the reading is in another unit.
         """
-        if gap_s is not None and self._start_anew_s is not None and gap_s > self._start_anew_s:
+        longest_s = self._start_anew_s
+        if gap_s is not None and longest_s is not None and not 0.0 <= gap_s <= longest_s:
             self._kept = []
         last = [*self._kept, features][-self._presses :]
         found = self._discriminant.together(last)

@@ -21,7 +21,8 @@ class MeanReading:
     readings : int
         How many; Christ and Sanderson present a test object five times (thesis section 4.4.1).
     start_anew_s : float, optional
-        Forget the readings before a gap longer than this: another object may lie there.
+        Forget the readings before a gap longer than this, or where the clock goes back: another
+        object may lie there.
     """
 
     def __init__(
@@ -39,8 +40,9 @@ class MeanReading:
         self, features: Measurements, *, gap_s: TimeGap = None
     ) -> Annotated[Measurements, Quantity.like("features")]:
         """Return the mean with this reading included."""
-        long = gap_s is not None and self._start_anew_s is not None and gap_s > self._start_anew_s
-        if long or features.names != self._names:
+        longest_s = self._start_anew_s
+        anew = gap_s is not None and longest_s is not None and not 0.0 <= gap_s <= longest_s
+        if anew or features.names != self._names:
             self._kept.clear()
         self._names = features.names
         self._kept.append(features.values)

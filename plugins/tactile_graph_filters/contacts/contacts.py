@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
+from tactile_graph_filters.contacts.at_rest import counts_the_offset
 from tactile_graph_filters.contacts.labels import label
 from tactile_graph_filters.images.crop import Box, cut_image, origin_of, widened
 from tactile_graph_filters.nan import refuse_unbounded
@@ -170,6 +171,9 @@ def contacts(
         if sums[0] >= min_cells
     ]
     return Contacts(tuple(found), len(found))
+
+
+contacts.notice = counts_the_offset  # type: ignore[attr-defined]
 
 
 def _contact(

@@ -80,7 +80,7 @@ class CorrectPlace:
                 f"pad {pad!r} has no correction of place: learn it from objects at known places, "
                 "by tactile-graph learn-pad"
             )
-        self._place, self._reading = read_place(Path(learned.place)), learned.reading
+        self._place, self._learned = read_place(Path(learned.place)), learned
 
     def __call__(self, image: Image, contacts: Sequence[Contact]) -> PlacedContacts:
         """Return the contacts; all but the centre as it was.
@@ -88,16 +88,18 @@ class CorrectPlace:
         Raises
         ------
         RuleError
-            If the image has another shape or quantity than the pad.
+            If the image has another shape, quantity or pitch than the pad.
         DataError
             If a valid cell holds NaN or infinity, or a contact comes to lie at no finite place.
         """
-        if image.shape != self._place.shape or image.quantity != self._reading:
+        reading = self._learned.reading
+        if image.shape != self._place.shape or image.quantity != reading:
             rows, columns = self._place.shape
             raise RuleError(
-                f"the correction is of {self._reading} on {rows} x {columns} elements, got "
+                f"the correction is of {reading} on {rows} x {columns} elements, got "
                 f"{image.quantity} on {image.rows} x {image.columns}"
             )
+        self._learned.require_pitch(image)
         require_finite(image)
         good = np.ones(image.shape, np.bool_) if image.valid is None else image.valid
         pitch, origin = np.array(image.pitch_cm), np.array(image.origin_cm)

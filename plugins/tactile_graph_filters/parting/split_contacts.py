@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
+from tactile_graph_filters.contacts.at_rest import counts_the_offset
 from tactile_graph_filters.contacts.contacts import Contacts
 from tactile_graph_filters.contacts.labelled import contacts_of
 from tactile_graph_filters.nan import require_summable
@@ -75,6 +76,7 @@ class SplitContacts:
     """
 
     stateless = True
+    notice = staticmethod(counts_the_offset)
 
     def __init__(
         self,

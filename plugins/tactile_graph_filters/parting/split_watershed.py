@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
+from tactile_graph_filters.contacts.at_rest import counts_the_offset
 from tactile_graph_filters.contacts.contacts import Contacts
 from tactile_graph_filters.contacts.labelled import contacts_of
 from tactile_graph_filters.nan import require_summable
@@ -77,6 +78,9 @@ def split_watershed(
     labels = _flooded(_height(image, mask.values, bridged, by), bridged, neck)
     labels[~mask.values] = 0
     return contacts_of(labels, image, min_cells, margin)
+
+
+split_watershed.notice = counts_the_offset  # type: ignore[attr-defined]
 
 
 def _bridged(on: NDArray[np.bool_], cells: int) -> NDArray[np.bool_]:

@@ -46,7 +46,7 @@ class CorrectReadings:
         from tactile_graph_pads.pad import learned_of
 
         learned = learned_of(pad)
-        table = learned.table
+        self._learned, table = learned, learned.table
         self._reading, self._gain_of = learned.reading, learned.gain_of
         stuck = table.state == "stuck"
         self._good: NDArray[np.bool_] = table.good | stuck if keep_stuck else table.good
@@ -64,13 +64,15 @@ class CorrectReadings:
         Raises
         ------
         RuleError
-            If the image has another shape than the pad, or a quantity the pad says nothing of.
+            If the image has another shape or pitch than the pad, or a quantity the pad says
+            nothing of.
         DataError
             If a valid cell holds NaN or infinity.
         """
         if image.shape != self._good.shape:
             rows, columns = self._good.shape
             raise RuleError(f"the pad has {rows} x {columns} elements, got {image.shape}")
+        self._learned.require_pitch(image)
         if image.quantity not in self._known:
             raise RuleError(
                 f"the pad was learned from {self._reading}, got {image.quantity}: put this step "

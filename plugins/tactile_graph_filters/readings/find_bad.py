@@ -35,7 +35,9 @@ class FindBad:
     -----
     An element is hot if its mean is off the median of all by more than ``n_sigma`` robust
     standard deviations (1.4826 times the median absolute deviation) and by more than ``n_sigma``
-    times the median noise, so that an even pad is not judged by rounding. State: what was found.
+    times the median noise, so that an even pad is not judged by rounding. Only valid readings
+    count, and only elements that have one in at least half of the frames are judged, by one
+    another. State: what was found.
     """
 
     def __init__(
@@ -47,6 +49,7 @@ class FindBad:
     ) -> None:
         self._n_frames, self._n_sigma, self._dead = n_frames, n_sigma, dead
         self._seen = 0
+        self._n: NDArray[np.int64] = np.zeros((0, 0), np.int64)
         self._mean: NDArray[np.float64] = np.zeros((0, 0))
         self._squares: NDArray[np.float64] = np.zeros((0, 0))
         self._good: NDArray[np.bool_] | None = None
@@ -77,27 +80,38 @@ class FindBad:
         if not finite(image.values):
             refuse_nan(image, infinite=True)
         values = image.filled(0.0).astype(np.float64)
+        valid = np.ones(values.shape, np.bool_) if image.valid is None else image.valid
         self._seen += 1
         if self._seen == 1:
-            self._mean, self._squares = values, np.zeros(values.shape)
+            self._n, self._mean = valid.astype(np.int64), values
+            self._squares = np.zeros(values.shape)
             return
-        off = values - self._mean
-        self._mean = self._mean + off / self._seen
+        self._n = self._n + valid
+        off = np.where(valid, values - self._mean, 0.0)
+        self._mean = self._mean + off / np.maximum(self._n, 1)
         self._squares = self._squares + off * (values - self._mean)
         if self._seen == self._n_frames:
-            self._good = self._judge(np.sqrt(self._squares / (self._seen - 1)))
+            judged = self._n >= max(2.0, 0.5 * self._n_frames)
+            self._good = ~judged
+            if judged.any():
+                n = self._n[judged]
+                noise = np.sqrt(self._squares[judged] / (n - 1))
+                self._good[judged] = self._judge(self._mean[judged], noise, n)
 
-    def _judge(self, noise: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def _judge(
+        self, mean: NDArray[np.float64], noise: NDArray[np.float64], n: NDArray[np.int64]
+    ) -> NDArray[np.bool_]:
+        """Return which elements are good, by the mean and noise of their n readings each."""
         usual = float(np.median(noise))
-        far = np.abs(self._mean - np.median(self._mean))
+        far = np.abs(mean - np.median(mean))
         spread = MAD_TO_SIGMA * float(np.median(far))
-        good = far <= self._n_sigma * max(spread, usual, _smallest(self._mean))
+        good: NDArray[np.bool_] = far <= self._n_sigma * max(spread, usual, _smallest(mean))
         changing = noise > 0.0
         if usual > 0.0:
             logs = np.log(noise[changing])
             off = np.abs(logs - np.median(logs))
             # Even equal elements scatter: the log of a noise estimate by about 1 / sqrt(2 n).
-            scatter = max(MAD_TO_SIGMA * float(np.median(off)), (2.0 * self._n_frames) ** -0.5)
+            scatter = np.maximum(MAD_TO_SIGMA * float(np.median(off)), (2.0 * n[changing]) ** -0.5)
             loud = logs > np.median(logs) + self._n_sigma * scatter
             good[changing] &= ~loud
             if self._dead:

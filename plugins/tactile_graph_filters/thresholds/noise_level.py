@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tactile_graph.quantities import unit_of
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.readings.clipped_noise import clipped_noise
+from tactile_graph_filters.readings.dead_below import dead_below
 from tactile_graph_filters.readings.dead_lines import dead_lines
 from tactile_graph_filters.readings.ordered import in_order
 
@@ -24,6 +25,11 @@ LOW_TO_MIDDLE_SD = 0.9704
 """How far apart these lie in noise, in standard deviations."""
 NOISES = 10.0
 """The level lies so many standard deviations above the lower quarter."""
+FEW_CELLS = (1.0, 28.0, 10.1, 3.44, 1.97, 2.95, 1.99, 1.53, 1.26, 1.08, 1.32, 1.15, 1.04)
+"""By so much that spread is raised where it is a gap between few readings: of up to 4, 8, 12, …
+52 cells. An empty pad with normal noise is then reached no oftener than one of 8 x 8 (in one of 820
+frames; in one of 100 with 5 to 8 cells, where the two lowest alone tell), by 2 million simulated
+frames each."""
 LEAST_SHARE = 0.03
 """And no lower than at this share of the peak, for frames without any noise below."""
 
@@ -34,26 +40,30 @@ def noise_level(image: Image) -> float:
     Parameters
     ----------
     image : Image
-        Unloaded in at least a quarter of its valid cells. Dead rows and columns are left out.
+        Unloaded in at least a quarter of its valid cells. Dead rows and columns are left out,
+        and cells that are dead far below the others (`dead_below`).
 
     Returns
     -------
     float
         The lower quartile, plus ten standard deviations of the noise, as the distance of the
         5 % quantile from the quartile tells it (where both are cut off: `clipped_noise`), or 3 %
-        of the peak's height if that is more. Above every reading where all are equal; infinite
-        where no cell is valid.
+        of the peak's height if that is more. Of 52 cells or fewer it is raised by `FEW_CELLS`; of
+        4 or fewer no noise is known. Above every reading where all are equal; infinite where no
+        cell is valid.
 
     Notes
     -----
     Chosen on 90 frames of a capacitive panel (CapContact), so that its contacts are as many as the
     optical reference shows.
     """
-    found = lower_readings(image)
+    found = _lower(image)
     if found is None:
         return math.inf
-    low, base, peak = found
-    return level_above(base - low, base, peak)
+    low, base, peak, n = found
+    few = (n - 1) // 4
+    factor = FEW_CELLS[few] if 0 <= few < len(FEW_CELLS) else 1.0
+    return level_above(factor * (base - low), base, peak)
 
 
 def lower_readings(image: Image) -> tuple[float, float, float] | None:
@@ -62,11 +72,19 @@ def lower_readings(image: Image) -> tuple[float, float, float] | None:
     Where both quantiles are the same, the first is what it were if nothing had cut off the noise
     that `clipped_noise` finds above. None where no cell is valid.
     """
+    found = _lower(image)
+    return None if found is None else found[:3]
+
+
+def _lower(image: Image) -> tuple[float, float, float, int] | None:
+    """Return the lower readings, and of how many cells; 0 where the first is no cell's reading."""
     rows, columns = dead_lines(image)
     values, usable = image.values, image.valid
     if rows.any() or columns.any():
         alive = ~rows[:, None] & ~columns
         usable = alive if usable is None else alive & usable
+    if (dead := dead_below(image)) is not None:
+        usable = ~dead if usable is None else usable & ~dead
     if usable is not None:
         values = values[usable]
     if values.size == 0:
@@ -77,7 +95,8 @@ def lower_readings(image: Image) -> tuple[float, float, float] | None:
     lowest, base, peak = (float(parted[k]) for k in (low, middle, seen.size - 1))
     if lowest == base < peak:
         lowest -= LOW_TO_MIDDLE_SD * _noise_above(image.values, usable, seen, base)
-    return lowest, base, peak
+        return lowest, base, peak, 0
+    return lowest, base, peak, seen.size
 
 
 def _noise_above(

@@ -12,8 +12,13 @@ from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps import Report
 from tactile_graph.steps.settings import spelled, validate_settings
-from tactile_graph.wires import Frame
+from tactile_graph.wires import Frame, Image
 from tactile_graph_filters.thresholds.noise_level import level_above, lower_readings
+
+TOGETHER = 256
+"""Cells in which noise that is cut off shows: of smaller pads, frames are looked at together."""
+
+Readings = tuple[float, float, float]
 
 
 class RecordingLevel(NamedTuple):
@@ -37,6 +42,7 @@ def recording_level(recording: Path | Mapping[str, Any]) -> RecordingLevel:
     RecordingLevel
         Base and noise are the medians of what `noise_level` finds in each frame, the peak is the
         highest of all: an empty frame, or one with a light touch, has the level of all others.
+        Where frames of fewer than 256 cells show no noise, several are looked at as one.
 
     Raises
     ------
@@ -47,19 +53,45 @@ def recording_level(recording: Path | Mapping[str, Any]) -> RecordingLevel:
         If the file is no recording.
     """
     found, quantities = [], set()
+    small: list[Image] = []
+    together: list[Readings] = []
     for frame in _frames(recording):
-        readings = lower_readings(frame.image)
-        quantities.add(frame.image.quantity)
-        if readings is not None:
-            found.append(readings)
+        image = frame.image
+        readings = lower_readings(image)
+        quantities.add(image.quantity)
+        if readings is None:
+            continue
+        found.append(readings)
+        if image.values.size < TOGETHER:
+            if small and small[0].columns != image.columns:
+                small = []
+            small.append(image)
+            if sum(its.values.size for its in small) >= TOGETHER:
+                if of_all := lower_readings(_one_of(small)):
+                    together.append(of_all)
+                small = []
     name = str(recording if isinstance(recording, Path) else dict(recording))
     if not found or len(quantities) != 1:
         what = "frames of several quantities" if found else "no frame with a valid cell"
         raise UsageError(f"noise_of {name}: it holds {what}, so one level cannot be told")
     low, base, peaks = np.array(found).T
-    level = level_above(float(np.median(base - low)), float(np.median(base)), float(peaks.max()))
+    spread = float(np.median(base - low))
+    if spread == 0.0 and together:
+        low, middle, _ = np.array(together).T
+        spread = float(np.median(middle - low))
+    level = level_above(spread, float(np.median(base)), float(peaks.max()))
     told = f"the noise of {name}, {len(found)} frames"
     return RecordingLevel(level, quantities.pop(), told)
+
+
+def _one_of(images: list[Image]) -> Image:
+    """Return frames of as many columns one below the other."""
+    values = np.concatenate([its.values for its in images])
+    valid = None
+    if any(its.valid is not None for its in images):
+        every = (np.ones(its.shape, np.bool_) if its.valid is None else its.valid for its in images)
+        valid = np.concatenate([*every])
+    return Image(values, valid=valid)
 
 
 def _frames(recording: Path | Mapping[str, Any]) -> Iterator[Frame]:

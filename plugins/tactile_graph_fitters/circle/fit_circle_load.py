@@ -9,7 +9,7 @@ import numpy as np
 from annotated_types import Ge
 
 from tactile_graph.errors import DataError, Degenerate, RuleError
-from tactile_graph.steps import Quantity
+from tactile_graph.steps.rules import Grid, Quantity, require_square
 from tactile_graph.wires import Circle, Image
 from tactile_graph_fitters.circle.even_load import (
     MOST_ROUNDS,
@@ -91,7 +91,10 @@ class FitCircleLoad:
         self._least = float(0.5 * known.law.turn_on_g if shows_from is None else shows_from)
 
     def __call__(
-        self, image: Annotated[Image, Quantity("gram", "kilopascal", "raw", "counts", "level")]
+        self,
+        image: Annotated[
+            Image, Quantity("gram", "kilopascal", "raw", "counts", "level"), Grid(square_to=0.0)
+        ],
     ) -> EvenCircle:
         """Return the disc.
 
@@ -110,9 +113,8 @@ class FitCircleLoad:
             If fewer than 4 elements bear a load, these leave the disc open, or a load is too large
             to be summed.
         """
-        (across, down), (x, y) = image.pitch_cm, image.origin_cm
-        if abs(across - down) > 1e-9 * across:
-            raise RuleError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
+        require_square(image)
+        (across, _), (x, y) = image.pitch_cm, image.origin_cm
         if not self._gap_cm < across:
             raise RuleError(
                 f"gap_cm: must be below the pitch of {across:g} cm, got {self._gap_cm:g}"

@@ -12,6 +12,7 @@ from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image, Mask, quick_mask
 from tactile_graph_filters.readings.clipped_noise import clipped_noise
+from tactile_graph_filters.readings.dead_below import without_dead
 from tactile_graph_filters.readings.ordered import in_order
 from tactile_graph_likelihood.any_pad.clump import NEAR
 from tactile_graph_likelihood.any_pad.frame_noise import frame_noise, noise_of_sorted
@@ -263,7 +264,8 @@ class AboveNoise:
     -----
     The zero and the noise are those of the frame's own closest quarter of readings, which is taken
     to be untouched; where these are all the same and the least, the noise is what lies just above
-    (`clipped_noise`). ``level`` is the largest that any element must reach, in the image's unit.
+    (`clipped_noise`). Cells that are dead far below the others are left out (`dead_below`).
+    ``level`` is the largest that any element must reach, in the image's unit.
     """
 
     stateless = True
@@ -287,12 +289,13 @@ class AboveNoise:
         Raises
         ------
         RuleError
-            If a pad was learned, of another shape or quantity.
+            If a pad was learned, of another shape, pitch or quantity.
         ValueError
             If a valid cell is not finite or beyond 1e100.
         """
         its = taught(self._pad, image)
         if its is None:
+            image = without_dead(image)
             zero, least, count, near, most, shows, _ = _rising(image, self._deviations, False)
             mask = quick_mask(shows, image.pitch_cm, image.origin_cm, count)
             return Showing(mask, zero + least, min(most / max(least, TINY), MOST_RISE), near)

@@ -10,10 +10,11 @@ from annotated_types import Len
 
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.contest import tops_of_each
+from tactile_graph_likelihood.any_pad.first_fit import first_fit
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad, log_chances, shared_by
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, SoonSettings
-from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.any_pad.observed import NearlySquare, observed
 from tactile_graph_likelihood.single.any_pressure import shares_by
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
@@ -63,7 +64,7 @@ class Locate:
             name: AnyPad.of(settings, KINDS[name]) for name in dict.fromkeys(shapes)
         }
 
-    def __call__(self, image: Image) -> Located:
+    def __call__(self, image: NearlySquare) -> Located:
         """Return the choice.
 
         Parameters
@@ -74,12 +75,22 @@ class Locate:
         Raises
         ------
         RuleError
-            If the image's cells are not nearly square, or a pad was learned, of another shape
-            or quantity.
+            If the image's cells are not nearly square, or a pad was learned, of another shape,
+            pitch or quantity.
         Degenerate
             If nothing rises above the noise, or none of the shapes explains what does.
         """
-        return self.placed(image, [self.chosen(self.readings(image))])[0]
+        return self.placed(image, [self._believed(image)])[0]
+
+    def _believed(self, image: Image) -> Located:
+        """Return the choice by readings evened by learned gains, or not; see `first_fit`."""
+        one = next(iter(self._every.values()))
+        if one.unevened is None:
+            return self.chosen(self.readings(image))
+        if first_fit(image, self._pad, self._gap_cm, one).fits.unevened is not None:
+            return self.chosen(self.readings(image))
+        every = {name: its.unevened or its for name, its in self._every.items()}
+        return self._chosen(observed(image, self._pad, self._gap_cm, evened=False), every)
 
     def placed(self, image: Image, found: Sequence[Located]) -> list[Located]:
         """Return all objects of an image where a learned pad says that they lie."""
@@ -95,7 +106,10 @@ class Locate:
 
     def chosen(self, readings: Readings) -> Located:
         """Return the choice by some readings; errors as of a call."""
-        every = {name: any_pad.suited(readings) for name, any_pad in self._every.items()}
+        return self._chosen(readings, self._every)
+
+    def _chosen(self, readings: Readings, every: dict[str, AnyPad]) -> Located:
+        every = {name: any_pad.suited(readings) for name, any_pad in every.items()}
         readings, tops = tops_of_each(every, readings)
         chance = probabilities(tops, readings)
         best = max(chance, key=chance.__getitem__)

@@ -92,18 +92,9 @@ def noise_of_sorted(values):  # type: ignore[no-untyped-def]
     if step == np.inf:
         step = 0.0
     many = max(int(UNTOUCHED * n), 1)
-    at, width = 0, values[many - 1] - values[0]
-    for i in range(1, n - many + 1):
-        its = values[i + many - 1] - values[i]
-        if its < width:
-            at, width = i, its
+    at, width = closest(values, many, n - many + 1)
     if at >= many and is_saturated(values, at, many):
-        rest = at - many + 1
-        at, width = 0, values[many - 1] - values[0]
-        for i in range(1, rest):
-            its = values[i + many - 1] - values[i]
-            if its < width:
-                at, width = i, its
+        at, width = closest(values, many, at - many + 1)
     zero = 0.5 * (values[at] + values[at + many - 1])
     below, total = 0, 0.0
     while below < n and values[below] < zero:
@@ -112,6 +103,17 @@ def noise_of_sorted(values):  # type: ignore[no-untyped-def]
     if below < FEWEST:
         return zero, 0.0, step
     return zero, max(math.sqrt(total / below), width / WIDTH), step
+
+
+@compiled_later
+def closest(values: Values, many: int, starts: int) -> tuple[int, float]:
+    """Return where the shortest of as many stretches of ``many`` readings begins, and its width."""
+    at, width = 0, values[many - 1] - values[0]
+    for i in range(1, starts):
+        its = values[i + many - 1] - values[i]
+        if its < width:
+            at, width = i, its
+    return at, width
 
 
 @compiled_later

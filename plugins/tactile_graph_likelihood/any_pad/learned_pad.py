@@ -70,7 +70,8 @@ def taught(pad: Pad, image: Image) -> Taught | None:
     Raises
     ------
     RuleError
-        If the image has another shape than the pad, or a quantity the pad says nothing of.
+        If the image has another shape or pitch than the pad, or a quantity the pad says nothing
+        of.
     """
     learned = pad.learned
     if learned is None:
@@ -81,6 +82,7 @@ def taught(pad: Pad, image: Image) -> Taught | None:
             f"the pad was learned with {learned.rows} x {learned.columns} elements, got "
             f"{rows} x {columns}: take the pad that was learned from such recordings, or none"
         )
+    learned.require_pitch(image)
     known = known_quantities(pad)
     if image.quantity not in known:
         raise RuleError(

@@ -128,6 +128,8 @@ class AnyPad:
         posterior. On small pads only: see `suited`.
     sampled_above_cm : float
         The deviation of its centre from which on a quick disc is sampled after all.
+    unevened : AnyPad, optional
+        Where gains were learned: the same for readings that are not divided by them.
 
     Notes
     -----
@@ -142,6 +144,7 @@ class AnyPad:
     law: float = LAW
     quick: bool = False
     sampled_above_cm: float = math.inf
+    unevened: AnyPad | None = None
 
     @classmethod
     def of(cls, settings: LocateSettings, kind: int) -> AnyPad:
@@ -152,10 +155,12 @@ class AnyPad:
             sigma, voids = untold.sigma, voids or untold.voids
         elif settings.sigma is None:
             sigma = unevenness_left(settings.known_pad, sigma)
-        evened = sigma < told.noise.sigma
         noise = changed(told.noise, sigma=sigma, voids=voids)
         above_cm = math.inf if settings.sampled_above_cm is None else settings.sampled_above_cm
-        return cls(changed(told, noise=noise), 0.0 if evened else LAW, settings.quick, above_cm)
+        if sigma >= told.noise.sigma:
+            return cls(changed(told, noise=noise), LAW, settings.quick, above_cm)
+        plain = cls(told, LAW, settings.quick, above_cm)
+        return cls(changed(told, noise=noise), 0.0, settings.quick, above_cm, plain)
 
     @cached_property
     def _thorough(self) -> AnyPad:

@@ -6,9 +6,10 @@ from typing import Annotated
 
 from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.first_fit import first_fit
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad
-from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.any_pad.observed import NearlySquare
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single.likely import (
@@ -45,9 +46,7 @@ class LocateOne:
 
     def posterior(self, image: Image) -> Posterior:
         """Return the outline's posterior; parameters and errors as of a call."""
-        readings = observed(image, self._pad, self._gap_cm)
-        fits = self._any_pad.suited(readings)
-        readings, even = fits.first(readings)
+        fits, readings, even = first_fit(image, self._pad, self._gap_cm, self._any_pad)
         found = fits.around(readings, fits.completed(readings, even))
         return self._placing(image, [found])[0]
 
@@ -75,7 +74,7 @@ class LocateDisc(LocateOne):
     ) -> None:
         super().__init__(settings)
 
-    def __call__(self, image: Image) -> LikelyCircle:
+    def __call__(self, image: NearlySquare) -> LikelyCircle:
         """Return the disc.
 
         Parameters
@@ -86,8 +85,8 @@ class LocateDisc(LocateOne):
         Raises
         ------
         RuleError
-            If the image's cells are not nearly square, or a pad was learned, of another shape
-            or quantity.
+            If the image's cells are not nearly square, or a pad was learned, of another shape,
+            pitch or quantity.
         Degenerate
             If nothing rises above the noise, or no disc on the pad explains what does.
         """
@@ -101,7 +100,7 @@ class LocateRectangle(LocateOne):
 
     _kind = RECTANGLE
 
-    def __call__(self, image: Image) -> LikelyRectangle:
+    def __call__(self, image: NearlySquare) -> LikelyRectangle:
         """Return the rectangle; parameters and errors as for a disc."""
         found = likely(self.posterior(image))
         assert isinstance(found, LikelyRectangle)
@@ -113,7 +112,7 @@ class LocateEllipse(LocateOne):
 
     _kind = ELLIPSE
 
-    def __call__(self, image: Image) -> LikelyEllipse:
+    def __call__(self, image: NearlySquare) -> LikelyEllipse:
         """Return the ellipse; parameters and errors as for a disc."""
         found = likely(self.posterior(image))
         assert isinstance(found, LikelyEllipse)

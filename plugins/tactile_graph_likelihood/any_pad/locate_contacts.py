@@ -9,10 +9,10 @@ import numpy as np
 from annotated_types import Len
 
 from tactile_graph.errors import Degenerate
-from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import Contact
 from tactile_graph_likelihood.any_pad.choose import Locate, Name
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, AnyPadSettings
+from tactile_graph_likelihood.any_pad.observed import NearlySquare
 from tactile_graph_likelihood.single.likely import Likely
 from tactile_graph_likelihood.single.readings import Readings
 
@@ -50,7 +50,7 @@ class LocateContacts:
     ) -> None:
         self._locate = Locate(shapes=shapes, settings=settings)
 
-    def __call__(self, image: Image, contacts: Sequence[Contact]) -> LocatedContacts:
+    def __call__(self, image: NearlySquare, contacts: Sequence[Contact]) -> LocatedContacts:
         """Return the outlines.
 
         Parameters
@@ -63,8 +63,8 @@ class LocateContacts:
         Raises
         ------
         RuleError
-            If the image's cells are not nearly square, or a pad was learned, of another shape
-            or quantity.
+            If the image's cells are not nearly square, or a pad was learned, of another shape,
+            pitch or quantity.
         Degenerate
             If nothing rises above the noise.
         """

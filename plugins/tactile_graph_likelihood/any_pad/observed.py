@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.errors import Degenerate, RuleError
+from tactile_graph.errors import Degenerate
+from tactile_graph.steps.rules import Grid, require_square
 from tactile_graph.wires import Image
+from tactile_graph_filters.readings.dead_below import without_dead
 from tactile_graph_likelihood.any_pad.above_noise import EVERY, risen
 from tactile_graph_likelihood.any_pad.learned_pad import LAWFUL
 from tactile_graph_likelihood.any_pad.shown import (
@@ -30,8 +33,8 @@ NEARLY = 0.03
 """Of a cell's longer side, by which the other may be shorter: sizes come out wrong by half of
 that."""
 
-ROUNDING = 1e-9
-"""Of a side, by which numbers may have been rounded."""
+NearlySquare = Annotated[Image, Grid(square_to=NEARLY)]
+"""An image in any quantity that rises with load."""
 
 UNIFORM = np.array([OFF, ON, UNKNOWN, OFF, ON], np.uint8)
 """What states come to where all elements show from the same load: `UNDER` and `OVER` are none."""
@@ -40,7 +43,9 @@ MISFIT = 1e-3
 """Relative misfit of a circuit's inverse from which on volts are not that circuit's."""
 
 
-def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
+def observed(
+    image: Image, pad: Pad, gap_cm: float | None = None, *, evened: bool = True
+) -> Readings:
     """Return what an image shows, whatever its quantity.
 
     Parameters
@@ -48,12 +53,15 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     image : Image
         Volts are freed of the pad's circuit, unless most of them cannot be its, and conductances
         turned into loads by its law; any other quantity is taken to rise with load from the
-        frame's own zero. Invalid cells say nothing.
+        frame's own zero. Invalid cells say nothing, nor do those that are dead far below the
+        others (`dead_below`).
     pad : Pad
         What it has learned of its elements from recordings is applied, see `taught`.
     gap_cm : float, optional
         Distance of neighbouring elements' edges, less than the pitch; the pad's if not given, none
         where the image's pitch is not the pad's.
+    evened : bool
+        Whether loads are divided by gains that the pad has learned.
 
     Returns
     -------
@@ -65,20 +73,19 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
     ------
     RuleError
         If the cells are not nearly square, the gap leaves no element, or the pad was learned, of
-        another shape or quantity.
+        another shape, pitch or quantity.
     DataError
         If a valid cell is not finite or beyond 1e100.
     Degenerate
         If nothing shows.
     """
     across, down = image.pitch_cm
-    if abs(across - down) > (NEARLY + ROUNDING) * max(across, down):
-        raise RuleError(
-            f"needs cells that are square to {NEARLY:.0%}, got a pitch of {across:g} by {down:g} cm"
-        )
+    require_square(image, NEARLY)
     if gap_cm is None:
         gap_cm = pad.geometry.gap_cm if abs(across - pad.geometry.pitch_cm) < SAME * across else 0.0
     grid = grid_of(image, gap_cm)
+    if pad.learned is None:
+        image = without_dead(image)
     above, least, shows, _, its = risen(image, pad)
     if not above.size:
         raise Degenerate("the image has no element: no outline fits")
@@ -87,7 +94,8 @@ def observed(image: Image, pad: Pad, gap_cm: float | None = None) -> Readings:
         known = _both(known, image.valid)
     if its is not None:
         known = _both(known, its.good)
-        loads, least_loads = loads / its.gain, least_loads / its.gain
+        if evened:
+            loads, least_loads = loads / its.gain, least_loads / its.gain
     seen, floor = shown_loads.direct(loads, least_loads, shows, known)
     if not seen.size:
         raise Degenerate("no reading rises above the noise: no outline fits")

@@ -92,7 +92,7 @@ class FootprintByOrder:
 
     def __call__(
         self,
-        image: Image,
+        image: Annotated[Image, Grid(square_to=0.0)],
         touched: Annotated[Mask, Grid.like("image")] | None = None,
     ) -> Likely:
         """Return the outline.

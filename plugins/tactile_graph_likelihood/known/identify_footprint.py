@@ -11,7 +11,7 @@ import numpy as np
 from annotated_types import Ge, Lt
 
 from tactile_graph.errors import Degenerate
-from tactile_graph.steps import Quantity, Spread
+from tactile_graph.steps import Grid, Quantity, Spread
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, Values
 from tactile_graph_likelihood.known.known_footprints import (
@@ -126,7 +126,9 @@ class IdentifyFootprint:
         self._log_unknown = math.log(max(unknown, 1e-300))
         self._log_known = math.log((1.0 - unknown) / len(self._objects))
 
-    def __call__(self, image: Annotated[Image, Quantity("gram")]) -> Identified:
+    def __call__(
+        self, image: Annotated[Image, Quantity("gram"), Grid(square_to=0.0)]
+    ) -> Identified:
         """Return the object.
 
         Parameters

@@ -27,7 +27,7 @@ WORTH = 0.01
 """Share of the readings' variance that more frames must take off to be worth a new posterior."""
 
 SOON_S = 0.1
-"""Time between frames where nobody says."""
+"""Time between frames where no clock says."""
 
 
 class Followed(NamedTuple):
@@ -123,7 +123,9 @@ class FollowFootprint:
         """
         try:
             readings = self._model.readings(image)
-            if self._rests(readings, SOON_S if gap_s is None else gap_s):
+            if gap_s is None or gap_s < 0.0:  # a clock that was set back
+                gap_s = SOON_S
+            if self._rests(readings, gap_s):
                 return self._again(readings)
             return self._put_down(readings)
         except Degenerate:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.covered import window
+from tactile_graph_likelihood.geometry.covered import Box, window
 from tactile_graph_likelihood.geometry.outline_prior import SMALLEST, log_prior
 from tactile_graph_likelihood.geometry.outlines import REGULAR, Values, unknowns
 from tactile_graph_likelihood.single.element_terms import (
@@ -23,6 +23,7 @@ from tactile_graph_likelihood.single.element_terms import (
     terms,
 )
 from tactile_graph_likelihood.single.information import (
+    MOST_ODDS,
     SLIVER,
     STEP,
     Information,
@@ -158,83 +159,99 @@ def log_rest_of(problem: JointProblem, outlines: Outlines) -> float:
 
 
 @compiled_as_is
-def gain(problem: JointProblem, outlines: Outlines) -> float:
-    """Return what outlines add to the log likelihood of an image where others already lie."""
-    grid, logs, states, noise = problem.grid, problem.logs, problem.states, problem.noise
-    (rows, cols), margin = states.shape, foam_margin(grid, noise)
+def window_of(problem: JointProblem, outlines: Outlines, margin: float) -> Box:
+    """Return the window of elements that outlines, and a margin around them, reach."""
+    rows, cols = problem.states.shape
     r0, c0, r1, c1 = rows, cols, 0, 0
     for k in range(outlines.kinds.shape[0]):
         kind, corners, p = outlines.kinds[k], outlines.corners[k], outlines.points[k]
-        box = window(kind, corners, p, grid, rows, cols, margin)
+        box = window(kind, corners, p, problem.grid, rows, cols, margin)
         if box[2] > 0 and box[3] > 0:
             r0, c0 = min(r0, box[0]), min(c0, box[1])
             r1, c1 = max(r1, box[0] + box[2]), max(c1, box[1] + box[3])
-    if r1 <= r0 or c1 <= c0:
-        return 0.0
-    load, share = problem.load[r0:r1, c0:c1].copy(), problem.share[r0:r1, c0:c1].copy()
-    before = terms(load, 0.0, r0, c0, logs, states, noise) - overlap(share)
-    for k in range(outlines.kinds.shape[0]):
-        lay(problem, outlines, k, r0, c0, load, share)
-    return terms(load, 0.0, r0, c0, logs, states, noise) - overlap(share) - before
+    return r0, c0, max(r1 - r0, 0), max(c1 - c0, 0)
 
 
 @compiled_as_is
-def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> None:
-    """Write the slope of `gain` and its information, shape (6 N,) and (6 N, 6 N).
+def gain(problem: JointProblem, outlines: Outlines) -> float:
+    """Return what outlines add to the log likelihood of an image where others already lie."""
+    logs, states, noise = problem.logs, problem.states, problem.noise
+    row, column, rows, cols = window_of(problem, outlines, foam_margin(problem.grid, noise))
+    if rows == 0 or cols == 0:
+        return 0.0
+    load = problem.load[row : row + rows, column : column + cols].copy()
+    share = problem.share[row : row + rows, column : column + cols].copy()
+    before = terms(load, 0.0, row, column, logs, states, noise) - overlap(share)
+    for k in range(outlines.kinds.shape[0]):
+        lay(problem, outlines, k, row, column, load, share)
+    return terms(load, 0.0, row, column, logs, states, noise) - overlap(share) - before
+
+
+@compiled_as_is
+def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> float:
+    """Write the slope of `gain` and its information, shape (6 N,) and (6 N, 6 N); return `gain`.
 
     Places of numbers that an outline does not have get a one on the diagonal. As in
     `information.information`; an element under several outlines couples them.
     """
     kinds, corners, points = outlines
-    grid, noise, states = problem.grid, problem.noise, problem.states
-    rows, cols = states.shape
+    grid, noise = problem.grid, problem.noise
     count = kinds.shape[0]
-    expected, total = problem.load.copy(), problem.share.copy()
-    own, size = np.zeros((count, rows, cols)), count * WIDTH
-    rise = np.zeros((size, rows, cols))
-    for x in range(size):
-        out.slope[x] = 0.0
-        for y in range(size):
-            out.matrix[x, y] = 0.0
-    margin = foam_margin(grid, noise) + grid[2] * STEP
+    size, margin = count * WIDTH, foam_margin(grid, noise) + grid[2] * STEP
+    out.slope[:] = 0.0
+    out.matrix[:] = 0.0
+    for k in range(count):
+        for m in range(unknowns(kinds[k], corners[k]) + 1, WIDTH):
+            out.matrix[k * WIDTH + m, k * WIDTH + m] = 1.0
+    row, column, rows, cols = window_of(problem, outlines, margin)
+    if rows == 0 or cols == 0:
+        return 0.0
+    expected = problem.load[row : row + rows, column : column + cols].copy()
+    total = problem.share[row : row + rows, column : column + cols].copy()
+    own, rise = np.zeros((count, rows, cols)), np.zeros((size, rows, cols))
     for k in range(count):
         kind, n, first = kinds[k], corners[k], unknowns(kinds[k], corners[k])
-        for m in range(first + 1, WIDTH):
-            out.matrix[k * WIDTH + m, k * WIDTH + m] = 1.0
-        box = window(kind, n, points[k], grid, rows, cols, margin)
+        box = window(
+            kind, n, points[k], grid, problem.states.shape[0], problem.states.shape[1], margin
+        )
         if box[2] <= 0 or box[3] <= 0:
             continue
-        scale, r, c = math.exp(points[k, first]), box[0], box[1]
+        scale, r, c = math.exp(points[k, first]), box[0] - row, box[1] - column
         steep = np.zeros((first, box[2], box[3]))
-        here, _ = shares_with_slopes(kind, n, points[k], grid, noise, box, rows, cols, steep)
+        here, _ = shares_with_slopes(
+            kind, n, points[k], grid, noise, box, problem.states.shape[0],
+            problem.states.shape[1], steep,
+        )  # fmt: skip
         for i in range(box[2]):
             for j in range(box[3]):
                 own[k, r + i, c + j] = here[i, j]
                 expected[r + i, c + j] += scale * here[i, j]
                 total[r + i, c + j] += here[i, j]
-                for m in range(first):
+        for m in range(first):
+            for i in range(box[2]):
+                for j in range(box[3]):
                     rise[k * WIDTH + m, r + i, c + j] = steep[m, i, j]
-    _sum_up(problem, outlines, Coverage(expected, total, own, rise), out)
+    return _sum_up(problem, outlines, row, column, Coverage(expected, total, own, rise), out)
 
 
 @compiled_as_is
 def _sum_up(
-    problem: JointProblem, outlines: Outlines, coverage: Coverage, out: Information
-) -> None:
-    """Add each element's part to slope and information."""
+    problem: JointProblem, outlines: Outlines, row: int, column: int, coverage: Coverage,
+    out: Information,
+) -> float:  # fmt: skip
+    """Add each element's part to slope and information; return what all add to the likelihood."""
     kinds, corners, points = outlines
     expected, total, own, rise = coverage
-    logs, states, noise = problem.logs, problem.states, problem.noise
-    slope, matrix = out
-    rows, cols = states.shape
-    scatter, size, count = scatter_of(noise), slope.shape[0], kinds.shape[0]
-    along, tight, used = np.zeros(size), np.zeros(size), np.empty(size, np.int64)
+    noise, scatter, count = problem.noise, scatter_of(problem.noise), kinds.shape[0]
+    size = count * WIDTH
+    along, tight, used = np.empty(size), np.empty(size), np.empty(size, np.int64)
     firsts, scales = np.empty(count, np.int64), np.empty(count)
     for k in range(count):
         firsts[k] = unknowns(kinds[k], corners[k])
         scales[k] = math.exp(points[k, firsts[k]])
-    for i in range(rows):
-        for j in range(cols):
+    found, odds, per_square = 0.0, 1.0, 1.0 / (OVERLAP * OVERLAP)
+    for i in range(expected.shape[0]):
+        for j in range(expected.shape[1]):
             n = 0
             for k in range(count):
                 if own[k, i, j] <= 0.0:
@@ -243,28 +260,37 @@ def _sum_up(
                 floor = max(expected[i, j], SLIVER * scale)
                 for m in range(first):
                     at = k * WIDTH + m
-                    along[n], tight[n] = scale * rise[at, i, j] / floor, rise[at, i, j]
-                    used[n] = at
-                    n += 1
+                    if rise[at, i, j] != 0.0:
+                        along[n], tight[n] = scale * rise[at, i, j] / floor, rise[at, i, j]
+                        used[n] = at
+                        n += 1
                 along[n], tight[n] = scale * own[k, i, j] / expected[i, j], 0.0
                 used[n] = k * WIDTH + first
                 n += 1
             if n == 0:
                 continue
             score, weight = 0.0, 0.0
-            state = states[i, j]
+            state = problem.states[row + i, column + j]
             if state != UNKNOWN:
-                log = noise[LEAST] if state == OFF else logs[i, j]
-                _, found = score_of(state, log, math.log(expected[i, j]), scatter)
-                score, weight = found[0], found[1]
-            excess = (total[i, j] - 1.0) / (OVERLAP * OVERLAP)
-            push = 1.0 / (OVERLAP * OVERLAP) if excess > 0.0 else 0.0
-            for a_ in range(n):
-                x = used[a_]
-                slope[x] += score * along[a_]
-                if push > 0.0:
-                    slope[x] -= excess * tight[a_]
-                for b_ in range(a_ + 1):
-                    y = used[b_]
-                    matrix[x, y] += weight * along[a_] * along[b_] + push * tight[a_] * tight[b_]
-    mirror(matrix)
+                log = noise[LEAST] if state == OFF else problem.logs[row + i, column + j]
+                likelier, its = score_of(state, log, math.log(expected[i, j]), scatter)
+                score, weight = its[0], its[1]
+                odds *= likelier
+                before = problem.load[row + i, column + j]
+                if before > 0.0:
+                    likelier, _ = score_of(state, log, math.log(before), scatter)
+                    odds /= likelier
+                if not 1.0 / MOST_ODDS < odds < MOST_ODDS:
+                    found += math.log(odds)
+                    odds = 1.0
+            over, push = total[i, j] - 1.0, 0.0
+            if over > 0.0:
+                push, beyond = per_square, max(problem.share[row + i, column + j] - 1.0, 0.0)
+                found -= 0.5 * per_square * (over * over - beyond * beyond)
+            for a in range(n):
+                x, by_load, by_share = used[a], weight * along[a], push * tight[a]
+                out.slope[x] += score * along[a] - over * by_share
+                for b in range(a + 1):
+                    out.matrix[x, used[b]] += by_load * along[b] + by_share * tight[b]
+    mirror(out.matrix)
+    return found + math.log(odds)

@@ -19,7 +19,7 @@ from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.alike import alikeness
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
-from tactile_graph_likelihood.several.partings import across, partings, sketch_of
+from tactile_graph_likelihood.several.partings import across, partings, sketch_of_mask
 from tactile_graph_likelihood.several.scene import Scene
 from tactile_graph_likelihood.several.seeds import seeds
 from tactile_graph_likelihood.several.sketch import STAGES, lay_sketches, settle_sketches
@@ -193,11 +193,8 @@ class Ladder(Scene):
 
     def sketch_of(self, mask: Mask) -> Values:
         """Return the sketch with a mask's moments, shape (1, 6)."""
-        r, c = np.nonzero(mask)
-        logs = self.problem.logs[r, c].sum()
-        sums = [len(r), c.sum(), r.sum(), (c * c).sum(), (r * c).sum(), (r * r).sum(), logs]
         point = np.zeros((1, WIDTH))
-        sketch_of.call(np.array(sums, dtype=np.float64), self.problem.grid, point[0])
+        sketch_of_mask.call(mask, self.problem.logs, self.problem.grid, point)
         return point
 
     def surplus(self, load: Values) -> float:

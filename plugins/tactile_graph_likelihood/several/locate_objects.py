@@ -10,7 +10,6 @@ import numpy as np
 from annotated_types import Ge, Le, MinLen
 
 from tactile_graph.steps import Spread
-from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.from_frame import (
     FEWEST,
     MOST_STRAYS,
@@ -20,7 +19,7 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     learned,
     variance_inflation,
 )
-from tactile_graph_likelihood.any_pad.observed import observed, uniform
+from tactile_graph_likelihood.any_pad.observed import NearlySquare, observed, uniform
 from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, within
 from tactile_graph_likelihood.geometry.outline_prior import LARGEST, SMALLEST
 from tactile_graph_likelihood.geometry.outlines import Values
@@ -96,7 +95,7 @@ class LocateObjects:
         self._pad, self._gap_cm, self._told = settings.known_pad, settings.gap_cm, settings.noise
         self.expected = settings.expected(kinds, most, more)
 
-    def __call__(self, image: Image) -> Footprints:
+    def __call__(self, image: NearlySquare) -> Footprints:
         """Return the outlines.
 
         Parameters

@@ -68,7 +68,15 @@ def log_posterior(problem: JointProblem, outlines: Outlines) -> float:
 
 
 @compiled_as_is
-def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enough: float) -> float:
+def with_slopes(problem: JointProblem, outlines: Outlines, out: Information) -> float:
+    """Return `log_posterior`; write slope and information of the readings alone."""
+    return log_rest_of(problem, outlines) + slopes(problem, outlines, out)
+
+
+@compiled_as_is
+def maximise_jointly(
+    problem: JointProblem, outlines: Outlines, most: int, enough: float, out: Information
+) -> float:
     """Bring outlines, in place, to the top of their log posterior given others; return it.
 
     Parameters
@@ -80,30 +88,32 @@ def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enoug
         Rounds.
     enough : float
         Gain in log posterior still promised, below which the search ends.
+    out : Information
+        Written: what `slopes` does, where the outlines end.
     """
     kinds, corners, points = outlines
     noise, prior = problem.noise, problem.prior
     size = kinds.shape[0] * WIDTH
     step, root = np.empty(size), np.empty((size, size))
-    out = Information(np.empty(size), np.empty((size, size)))
-    slope, matrix = out
+    all_in = Information(np.empty(size), np.empty((size, size)))
+    ahead = Information(np.empty(size), np.empty((size, size)))
     for k in range(kinds.shape[0] if most > 0 else 0):
         _pulled_in(kinds[k], corners[k], points[k], noise, prior)
     trial = points.copy()
     tried = Outlines(kinds, corners, trial)
-    now = log_posterior(problem, outlines)
+    now = with_slopes(problem, outlines, out)
     damping = 0.0
     for _ in range(most):
-        slopes(problem, outlines, out)
-        add_rest(problem, outlines, LOOSE, out)
+        _take(out, all_in)
+        add_rest(problem, outlines, LOOSE, all_in)
         for k in range(size):
-            matrix[k, k] *= 1.0 + damping
-        if not cholesky(matrix, root):
+            all_in.matrix[k, k] *= 1.0 + damping
+        if not cholesky(all_in.matrix, root):
             return now
-        solved(root, slope, step)
+        solved(root, all_in.slope, step)
         promised = 0.0
         for k in range(size):
-            promised += slope[k] * step[k]
+            promised += all_in.slope[k] * step[k]
         if promised < enough:
             return now
         part, new = 1.0, -math.inf
@@ -112,7 +122,10 @@ def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enoug
                 for m in range(WIDTH):
                     trial[k, m] = points[k, m] + part * step[k * WIDTH + m]
                 _pulled_in(kinds[k], corners[k], trial[k], noise, prior)
-            new = log_posterior(problem, tried)
+            if part == 1.0:  # mostly the next point: a second look would cost more
+                new = with_slopes(problem, tried, ahead)
+            else:
+                new = log_posterior(problem, tried)
             if new > now:
                 break
             part *= 0.4
@@ -124,10 +137,22 @@ def maximise_jointly(problem: JointProblem, outlines: Outlines, most: int, enoug
         gained, now = new - now, new
         for x in range(size):
             points[x // WIDTH, x % WIDTH] = trial[x // WIDTH, x % WIDTH]
+        if part < 1.0:
+            slopes(problem, outlines, ahead)
+        _take(ahead, out)
         damping = 0.0 if part == 1.0 else 0.3
         if gained < 0.5 * enough:
             return now
     return now
+
+
+@compiled_as_is
+def _take(its: Information, out: Information) -> None:
+    """Write one information into another."""
+    for x in range(its.slope.shape[0]):
+        out.slope[x] = its.slope[x]
+        for y in range(its.slope.shape[0]):
+            out.matrix[x, y] = its.matrix[x, y]
 
 
 @compiled_as_is
@@ -156,20 +181,19 @@ def softened(problem: JointProblem) -> JointProblem:
 
 @compiled_as_is
 def laplace_evidence(
-    problem: JointProblem, outlines: Outlines, total: float, matrix: Values
+    problem: JointProblem, outlines: Outlines, total: float, out: Information
 ) -> float:
-    """Return the log evidence around a mode by Laplace's method; write the information there.
+    """Return the log evidence around a mode by Laplace's method.
 
-    ``total`` is the log posterior at the mode.
+    ``total`` is the log posterior at the mode, ``out`` what `slopes` writes there; what is known
+    beforehand is added to it.
     """
     kinds, corners, points = outlines
-    noise, prior = problem.noise, problem.prior
-    slope, root = np.empty(matrix.shape[0]), np.empty(matrix.shape)
-    out = Information(slope, matrix)
+    noise, prior, (slope, matrix) = problem.noise, problem.prior, out
     if total == -math.inf:
         return total
-    slopes(problem, outlines, out)
     add_rest(problem, outlines, GAP, out)
+    root = np.empty(matrix.shape)
     if not cholesky(matrix, root):
         return -math.inf
     for k in range(kinds.shape[0]):
@@ -197,10 +221,11 @@ def settle(
     rounds. The information is written to ``matrix``.
     """
     now, stages = -math.inf, (softened(problem), problem)
+    out = Information(np.empty(matrix.shape[0]), matrix)
     for stage in range(0 if soft > 0 else 1, 2):  # one call, which is compiled once
         rounds, least = (soft, 0.5) if stage == 0 else (most, enough)
-        now = maximise_jointly(stages[stage], outlines, rounds, least)
-    return laplace_evidence(problem, outlines, now, matrix)
+        now = maximise_jointly(stages[stage], outlines, rounds, least, out)
+    return laplace_evidence(problem, outlines, now, out)
 
 
 @compiled_as_is

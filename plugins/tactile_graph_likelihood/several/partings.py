@@ -55,6 +55,26 @@ def sketch_of(a: Values, grid: Values, p: Values) -> None:
     p[5] = a[6] / n
 
 
+@compiled_as_is
+def sketch_of_mask(
+    mask: NDArray[np.bool_], logs: Values, grid: Values, points: Values
+) -> None:  # fmt: skip
+    """Write the sketch that has a mask's moments, shape (1, 6)."""
+    sums = np.zeros(7)
+    for i in range(mask.shape[0]):
+        for j in range(mask.shape[1]):
+            if mask[i, j]:
+                x, y = float(j), float(i)
+                sums[0] += 1.0
+                sums[1] += x
+                sums[2] += y
+                sums[3] += x * x
+                sums[4] += x * y
+                sums[5] += y * y
+                sums[6] += logs[i, j]
+    sketch_of(sums, grid, points[0])
+
+
 class Across(NamedTuple):
     """The touched elements of a piece in order at each angle.
 

@@ -90,14 +90,14 @@ def posteriors_of(part: Found) -> list[Posterior]:
     ):  # of kinds that others leave no room
         found, matrix, every, sampled = _sampled(scene, part.outlines, as_found=True)
     together = np.asarray(np.linalg.inv(matrix), dtype=np.float64)
-    out = []
+    others, out = others_of(part), []
     for k, (kinds, some) in enumerate(zip(every, sampled, strict=True)):
         if some.log_evidence == -math.inf:
             raise Degenerate("no outline near the likeliest one is possible: none can be told")
         n = some.points.shape[1]
         here = slice(k * WIDTH, k * WIDTH + n)
         shift, spread = kinds.apart(n)
-        spread = spread + spread_of_others(part, found.only(k), n)
+        spread = spread + spread_of_others(others, found.only(k), n)
         points, mean, wider = widened.call(
             some.points, some.weights, matrix[here, here], together[here, here], spread, shift
         )
@@ -242,15 +242,27 @@ def kinds_of(scene: Search, found: Configuration, k: int) -> Kinds:
     return Kinds(fits, fits[int(logs.argmax())], chances / chances.sum())
 
 
-def spread_of_others(part: Found, one: Configuration, n: int) -> Values:
-    """Return the covariance that other outlines of a part add to one of the likeliest."""
-    spread, total, different = np.zeros((n, n)), 1.0, [part.outlines]
-    far_cm = SAME * float(part.scene.problem.grid[2])
+def others_of(part: Found) -> list[tuple[float, Configuration]]:
+    """Return other outlines of a part that lie elsewhere, each with its chance over the likeliest.
+
+    Of those at the same places the first.
+    """
+    others, far_cm = list[tuple[float, Configuration]](), SAME * float(part.scene.problem.grid[2])
     for log, other in part.others:
         chance = math.exp(min(log / TEMPER, 0.0))
-        if chance < NEGLIGIBLE or any(_are_same(other, it, far_cm) for it in different):
+        if chance < NEGLIGIBLE or _are_same(other, part.outlines, far_cm):
             continue
-        different.append(other)
+        if not any(_are_same(other, it, far_cm) for _, it in others):
+            others.append((chance, other))
+    return others
+
+
+def spread_of_others(
+    others: list[tuple[float, Configuration]], one: Configuration, n: int
+) -> Values:
+    """Return the covariance that other outlines add to one of the likeliest."""
+    spread, total = np.zeros((n, n)), 1.0
+    for chance, other in others:
         far = np.hypot(*(other.points[:, :2] - one.points[0, :2]).T)
         off = _off(other.only(int(far.argmin())), one, n)
         spread += chance * np.outer(off, off)

@@ -37,9 +37,9 @@ PARTED, THREES, THREE = 2, 2, 15.0
 """Pairs of sketches of two outlines' elements of which either half is parted again, triples that
 are drawn at most, and how much less log probability these may have than what they replace."""
 
-CHANGED, SAME_NUMBER, WORSE = 10.0, 20.0, 6.0
+PARTED_IN_TWO, JOINED, SAME_NUMBER, WORSE = 10.0, 7.0, 20.0, 6.0
 """How much less log probability sketches may have to be drawn: than what they replace, where they
-are one more or less or as many; than the best pair."""
+are one more, one less or as many; than the best pair."""
 
 SURPLUS = 4.0
 """What may be left unexplained beyond what is usual, in nats, for outlines not to be looked for in
@@ -71,6 +71,7 @@ class Search(Ladder):
         self.best: dict[int, Configuration] = {}
         self.every: list[Configuration] = []
         self.worths: dict[int, float] = {}
+        self.logs: dict[Configuration, float] = {}
 
     def divisions(
         self, room: int, begin: Configuration | None = None, anew: bool = True
@@ -123,7 +124,10 @@ class Search(Ladder):
 
     def of_number(self, found: Configuration) -> float:
         """Return the log probability of outlines that are all of a part's, in one order."""
-        return self.worth(found) + alikeness_of.call(found.outlines, self.problem.prior)
+        if (known := self.logs.get(found)) is None:
+            alike = alikeness_of.call(found.outlines, self.problem.prior)
+            known = self.logs[found] = self.worth(found) + alike
+        return known
 
     def noted(self, found: Configuration) -> Configuration:
         """Return outlines brought to their joint mode; they are kept if their number's best."""
@@ -183,12 +187,12 @@ class Search(Ladder):
         out, mask, unexplained = place
         if len(out) > 1:
             one = self.sketch_of(mask)
-            if self.sketched(one, beside) > before - CHANGED:
+            if self.sketched(one, beside) > before - JOINED:
                 yield self.drawn(one, beside, before)
             if unexplained < RECUT:
                 return
         pairs = self.parted(mask, beside, PAIRS)
-        least = before - (SAME_NUMBER if len(out) > 1 else CHANGED)
+        least = before - (SAME_NUMBER if len(out) > 1 else PARTED_IN_TWO)
         for worth, pair in pairs:
             if worth > max(least, pairs[0][0] - WORSE):
                 yield self.drawn(pair, beside, before)

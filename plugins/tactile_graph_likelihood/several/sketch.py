@@ -10,7 +10,6 @@ ln a, ln b, the angle of the first axis and the logarithm of its load.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -26,17 +25,15 @@ from tactile_graph_likelihood.several.joint_posterior import (
     JointProblem,
     lightest,
 )
-from tactile_graph_likelihood.single.element_terms import (
-    LEAST,
-    ON,
-    SIGMA,
-    SQRT_HALF,
-    UNDER,
-    UNKNOWN,
-    VOIDS,
-    on_level,
+from tactile_graph_likelihood.single.element_terms import LEAST, OFF, SIGMA, UNKNOWN
+from tactile_graph_likelihood.single.information import (
+    MOST_ODDS,
+    SLIVER,
+    Information,
+    mirror,
+    scatter_of,
+    score_of,
 )
-from tactile_graph_likelihood.single.information import DENSITY, SLIVER, Information
 
 STAGES = (
     (4.0, 1.5, 2.0, 0.0),
@@ -66,24 +63,6 @@ LONGEST = 1.0, 1.0, 0.4, 0.4, 0.5, 0.7
 """Longest step of each number; of the centre in pitches."""
 
 HALF_LN_TWO_PI = 0.5 * math.log(2.0 * math.pi)
-
-
-Said = tuple[float, float, float, float, float]
-"""Load on an element, slope and information of its reading, coverage beyond 1, and how strongly
-that is held against sketches."""
-
-
-class Brought(NamedTuple):
-    """What each sketch brings to an element.
-
-    Coverage, shape (K,); its slopes where it is between 0 and 1, shape (K, 6), the last 0; the load
-    of a covered element, shape (K,); room for the slopes of ln load, shape (K, 6).
-    """
-
-    own: Values
-    rise: Values
-    scale: Values
-    along: Values
 
 
 @compiled_as_is
@@ -154,27 +133,6 @@ def log_prior(problem: JointProblem, points: Values, out: Information) -> float:
 
 
 @compiled_as_is
-def reading(
-    state: int, log: float, mu: float, noise: Values, level: float
-) -> tuple[float, float, float]:
-    """Return the log likelihood of an element's reading, its slope in mu, and its information.
-
-    ``log`` is that of the load read, of the least that shows where nothing is read.
-    """
-    sigma, present = noise[SIGMA], 1.0 - noise[VOIDS]
-    z = (mu - log) / sigma
-    if state == ON:
-        a = level - 0.5 * z * z
-        if a < -30.0:
-            return 0.0, 0.0, 0.0
-        chance = 1.0 / (1.0 + math.exp(-a))
-        return a - math.log(chance), -chance * z / sigma, chance / (sigma * sigma)
-    none = 1.0 - present * 0.5 * math.erfc(-SQRT_HALF * z)
-    score = -present * DENSITY * math.exp(-0.5 * z * z) / (sigma * none)
-    return math.log(none), score, score * score
-
-
-@compiled_as_is
 def windows(grid: Values, points: Values, half: float, shape: tuple[int, int]) -> Values:
     """Return first and last row and column, and one more, of each sketch's elements, (K, 4)."""
     found = np.empty((points.shape[0], 4))
@@ -191,86 +149,74 @@ def windows(grid: Values, points: Values, half: float, shape: tuple[int, int]) -
 def log_posterior(problem: JointProblem, points: Values, half: float, out: Information) -> float:
     """Return what sketches add to the log posterior of a problem; write slope and information."""
     grid, noise, states, count = problem.grid, problem.noise, problem.states, points.shape[0]
-    total, level = log_prior(problem, points, out), on_level(noise)
+    total, scatter = log_prior(problem, points, out), scatter_of(noise)
     box = windows(grid, points, half, states.shape)
     frame, scale = np.empty((count, 8)), np.empty(count)
-    own, rise = np.empty(count), np.zeros((count, WIDTH))
-    brought = Brought(own, rise, scale, np.zeros((count, WIDTH)))
-    for k in range(count):
-        frame_of(points[k], frame[k])
-        scale[k] = math.exp(points[k, 5])
+    own, rise, size = np.empty(count), np.empty((count, WIDTH)), count * WIDTH
+    along, tight, used = np.empty(size), np.empty(size), np.empty(size, np.int64)
     rows, cols = states.shape
     first, last, left, right = rows, 0, cols, 0
     for k in range(count):
+        frame_of(points[k], frame[k])
+        scale[k] = math.exp(points[k, 5])
         first, last = min(first, int(box[k, 0])), max(last, int(box[k, 1]))
         left, right = min(left, int(box[k, 2])), max(right, int(box[k, 3]))
+    odds, latest, log_load = 1.0, 1.0, 0.0
     for i in range(first, last):
         y_cm = grid[1] + 0.5 * grid[3] + grid[2] * i
         for j in range(left, right):
             x_cm = grid[0] + 0.5 * grid[3] + grid[2] * j
-            more, load, before = 0.0, problem.load[i, j], problem.share[i, j] - 1.0
+            more, bare = 0.0, problem.load[i, j]
+            load = bare
             for k in range(count):
                 own[k] = 0.0
                 if box[k, 0] <= i < box[k, 1] and box[k, 2] <= j < box[k, 3]:
                     own[k] = cover(frame[k], x_cm, y_cm, half, rise[k])
-                more += own[k]
-                load += scale[k] * own[k]
+                    more += own[k]
+                    load += scale[k] * own[k]
             if more <= 0.0:
                 continue
-            here = 0.0, 0.0, 0.0
-            if states[i, j] != UNKNOWN:
-                shows = states[i, j] == ON or states[i, j] == UNDER
-                log = problem.logs[i, j] if shows else noise[LEAST]
-                here = reading(states[i, j], log, math.log(load), noise, level)
-                total += here[0]
-                if problem.load[i, j] > 0.0:
-                    bare = math.log(problem.load[i, j])
-                    total -= reading(states[i, j], log, bare, noise, level)[0]
-            over, push = before + more, 0.0
+            state, score, weight = states[i, j], 0.0, 0.0
+            if state != UNKNOWN:
+                log = noise[LEAST] if state == OFF else problem.logs[i, j]
+                if load != latest:
+                    latest, log_load = load, math.log(load)
+                likelier, its = score_of(state, log, log_load, scatter)
+                score, weight = its[0], its[1]
+                odds *= likelier
+                if bare > 0.0:
+                    likelier, _ = score_of(state, log, math.log(bare), scatter)
+                    odds /= likelier
+                if not 1.0 / MOST_ODDS < odds < MOST_ODDS:
+                    total += math.log(odds)
+                    odds = 1.0
+            before, push = problem.share[i, j] - 1.0, 0.0
+            over = before + more
             if over > 0.0:
                 push = 1.0 / (OVERLAP * OVERLAP)
                 total -= 0.5 * push * (over * over - max(before, 0.0) ** 2)
-            add_element(brought, (load, here[1], here[2], over, push), out)
-    for x in range(out.slope.shape[0]):
-        for y in range(x):
-            out.matrix[y, x] = out.matrix[x, y]
-    return total
-
-
-@compiled_as_is
-def add_element(brought: Brought, said: Said, out: Information) -> None:
-    """Add an element's part to slope and to the information's lower half."""
-    own, rise, scale, along = brought
-    load, score, weight, over, push = said
-    for k in range(own.shape[0]):
-        if own[k] <= 0.0:
-            continue
-        per_load, x = scale[k] / max(load, SLIVER * scale[k]), k * WIDTH
-        for m in range(5):
-            along[k, m] = per_load * rise[k, m] if own[k] < 1.0 else 0.0
-        along[k, 5] = scale[k] * own[k] / load
-        for m in range(WIDTH):
-            out.slope[x + m] += score * along[k, m]
-        for j in range(k + 1):
-            if own[j] > 0.0:
-                _add_products(weight, along[k], along[j], out.matrix, x, j * WIDTH)
-        if push > 0.0 and own[k] < 1.0:
-            for m in range(5):
-                out.slope[x + m] -= push * over * rise[k, m]
-            for j in range(k + 1):
-                if 0.0 < own[j] < 1.0:
-                    _add_products(push, rise[k], rise[j], out.matrix, x, j * WIDTH)
-
-
-@compiled_as_is
-def _add_products(
-    factor: float, one: Values, other: Values, matrix: Values, row: int, column: int
-) -> None:
-    """Add all products of two sketches' slopes to their block of the information."""
-    for a in range(WIDTH):
-        scaled = factor * one[a]
-        for b in range(WIDTH):
-            matrix[row + a, column + b] += scaled * other[b]
+            n = 0
+            for k in range(count):
+                if own[k] <= 0.0:
+                    continue
+                if own[k] < 1.0:
+                    per_load = scale[k] / max(load, SLIVER * scale[k])
+                    for m in range(5):
+                        along[n], tight[n] = per_load * rise[k, m], rise[k, m]
+                        used[n] = k * WIDTH + m
+                        n += 1
+                along[n], tight[n] = scale[k] * own[k] / load, 0.0
+                used[n] = k * WIDTH + 5
+                n += 1
+            for a in range(
+                n
+            ):  # written out, as in `slopes`: arrays handed over are counted each time
+                x, by_load, by_share = used[a], weight * along[a], push * tight[a]
+                out.slope[x] += score * along[a] - over * by_share
+                for b in range(a + 1):
+                    out.matrix[x, used[b]] += by_load * along[b] + by_share * tight[b]
+    mirror(out.matrix)
+    return total + math.log(odds)
 
 
 @compiled_as_is

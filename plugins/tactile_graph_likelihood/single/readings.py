@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import DataError, Degenerate, RuleError
+from tactile_graph.steps.rules import require_square
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.large_pads.solid import typical_load
@@ -177,9 +178,7 @@ def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT)
     Degenerate
         If nothing is touched.
     """
-    across, down = image.pitch_cm
-    if abs(across - down) > 1e-9 * across:
-        raise RuleError(f"needs square cells, got a pitch of {across:g} by {down:g} cm")
+    require_square(image)
     grid = grid_of(image, gap_cm)
     values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
     logs, states = np.empty(values.shape), np.empty(values.shape, np.uint8)

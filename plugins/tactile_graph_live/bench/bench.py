@@ -60,7 +60,8 @@ class Bench:
         self._baseline = order.baseline
         self._taring: Taring | None = None
         self._wants = wire.Want(False, False)
-        self._held = self._ended = self._restart = self._idle = False
+        self._held = order.held
+        self._ended = self._restart = self._idle = False
         self._changed = Condition()
         self._next_picture_ns = self._next_summary_ns = 0
         self._report = Report(listener=lambda where, what: self._say(f"{where}: {what}", "warning"))

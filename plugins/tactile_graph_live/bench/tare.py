@@ -23,13 +23,20 @@ def less(frame: Frame, baseline: NDArray[np.float64] | None) -> Frame:
     if baseline is None or baseline.shape != image.shape:
         return frame
     above = image.values - baseline
-    if image.valid is not None:
-        above[~image.valid] = 0.0
-    return replace(frame, image=image.with_values(above))
+    known = ~np.isnan(baseline)
+    valid = image.valid
+    if not known.all():
+        valid = known if valid is None else known & valid
+    if valid is not None:
+        above[~valid] = 0.0
+    return replace(frame, image=image.with_values(above, valid=valid))
 
 
 class Taring:
-    """Makes the baseline: the median of each cell over the frames that come next."""
+    """Makes the baseline: the median of each cell's valid readings over the frames to come.
+
+    It is NaN where a cell has none.
+    """
 
     def __init__(self) -> None:
         self._readings: list[NDArray[Any]] = []
@@ -37,7 +44,7 @@ class Taring:
 
     def add(self, frame: Frame) -> NDArray[np.float64] | None:
         """Take one more frame; return the baseline once there are enough."""
-        readings = frame.image.filled(0.0)
+        readings = frame.image.filled(np.nan)
         if self._readings and self._readings[0].shape != readings.shape:
             self._readings.clear()
         self._readings.append(readings)
@@ -45,7 +52,10 @@ class Taring:
         late = time.monotonic() - self._since > LONGEST_S and n >= FEWEST
         if n < N_FRAMES and not late:
             return None
-        return np.asarray(np.median(np.stack(self._readings), axis=0), dtype=np.float64)
+        frames = np.stack(self._readings)
+        known = ~np.isnan(frames).all(axis=0)
+        baseline = np.nanmedian(np.where(known, frames, 0.0), axis=0)
+        return np.where(known, baseline, np.nan)
 
     @property
     def n_frames(self) -> int:

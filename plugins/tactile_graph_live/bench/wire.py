@@ -45,6 +45,8 @@ class Order:
         A variant to run in what time is left, pickled; empty for none.
     baseline : (rows, columns) array or None
         What an earlier bench was tared by.
+    held : bool
+        Whether what is played waits from the beginning.
     """
 
     pickled: bytes
@@ -58,6 +60,7 @@ class Order:
     selection: str = ""
     beside: bytes = b""
     baseline: NDArray[np.float64] | None = None
+    held: bool = False
 
 
 # -- from the bench ------------------------------------------------------------------------------

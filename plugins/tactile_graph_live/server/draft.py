@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from tactile_graph import Pipeline, load, loads
+from tactile_graph import Pipeline, load
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, shown, text_of
 from tactile_graph.foreign_text import visible
 from tactile_graph_live.server.messages import Fault
@@ -110,8 +110,7 @@ class Draft:
         return text_with(self.base, self.given)
 
     def _set(self, here: Settings) -> Draft:
-        base = loads(self.base, self.pipeline.file)
-        pipeline = self._resolved(base, _merged(self.given, here))
+        pipeline = self._resolved(self.pipeline, _merged(self.given, here))
         return replace(self, pipeline=pipeline, set_here=here)._spelled()
 
     def _spelled(self) -> Draft:
@@ -120,9 +119,12 @@ class Draft:
         return self
 
     def _resolved(self, pipeline: Pipeline, settings: Settings) -> Pipeline:
+        """Return a pipeline with these settings alone, and the command line's source."""
         flat = {f"{n}.{s}": v for n, values in settings.items() for s, v in values.items()}
         source = self.pipeline.source_override
-        return pipeline.with_settings(flat, source) if flat or source else pipeline
+        if not (flat or source or pipeline.overrides):
+            return pipeline
+        return replace(pipeline, overrides={}).with_settings(flat, source)
 
     def same_source(self, other: Draft) -> bool:
         """Return whether two drafts take their frames from the same source, its files the same."""

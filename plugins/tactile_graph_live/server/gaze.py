@@ -51,6 +51,7 @@ class Gaze:
         self._lock = asyncio.Lock()
         self.paused = False
         self.shown: Picture | None = None
+        self._lost: Picture | None = None
 
     def came(self, picture: Picture) -> None:
         """Take a frame that ran just now; it is shown if the newest is looked at.
@@ -89,7 +90,7 @@ class Gaze:
     def step(self) -> None:
         """Look at the frame behind this one; what is held plays one more where there is none."""
         self.pause()
-        if self.shown is not None:
+        if self.shown is not None and self.shown is not self._lost:
             self._fetch(self.shown.frame.index, 0.0)
         else:
             self._one_more()
@@ -101,8 +102,19 @@ class Gaze:
 
     def again(self) -> None:
         """Run the frame again that is looked at, if it is held still: something else changed."""
-        if self.paused and self.shown is not None:
+        if self.paused and self.shown is not None and self.shown is not self._lost:
             self._fetch(self.shown.frame.index - 1, 0.0)
+
+    @property
+    def held(self) -> bool:
+        """Whether the source waits."""
+        return self.paused and self._holds
+
+    def bench_died(self) -> None:
+        """Go on with another bench, which has none of the frames so far and counts from 0."""
+        self._ticket += 1
+        self._newest = self._early = None
+        self._lost = self.shown
 
     def found(self, kept: wire.Kept) -> None:
         """Take frames that were kept."""

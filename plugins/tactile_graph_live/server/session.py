@@ -142,6 +142,7 @@ class Session:
             version=now.graph.version,
             selection=selected(),
             baseline=self._baseline,
+            held=self._gaze.held,
         )
 
         def take(message: wire.FromBench) -> None:
@@ -190,6 +191,7 @@ class Session:
         self._tell(died + recorded, "error")
         self._vitals.bench_died()
         self._editor.bench_died()
+        self._gaze.bench_died()
         self._start_bench()
 
     def _fail(self, why: str) -> None:

@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import yaml
@@ -112,7 +113,9 @@ class _Entry(NamedTuple):
     value: yaml.Node
 
 
+@lru_cache(maxsize=8)
 def _composed(text: str) -> tuple[yaml.Node | None, list[_Alias]]:
+    """Return a text's nodes, which nobody changes: while a setting is moved its file stays."""
     loader = _Loader(text)
     try:
         return loader.get_single_node(), loader.aliases

@@ -13,6 +13,7 @@ import click
 from tactile_graph.cli.completions import complete_source, complete_with
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
+from tactile_graph.cli.targets import check_targets
 from tactile_graph.plugins.registry import installed
 
 if TYPE_CHECKING:
@@ -83,8 +84,8 @@ def convert(
     from tactile_graph.steps.injected import Report
 
     *recordings, target = paths
-    _check(recordings, target, source)
-    writer: RecordingWriter = installed().load(OFFERS, target.suffix)
+    ending = _check(recordings, target, source)
+    writer: RecordingWriter = installed().load(OFFERS, ending)
     report, kept, opened = Report(), _Carried(), ExitStack()
     try:
         wanted = (source, settings, told, n_frames)
@@ -106,20 +107,27 @@ def convert(
         say(line, err=True)
     lost = [name for name in kept.names if name in writer.loses]
     if lost:
-        say(f"left out, as a {target.suffix} has no place for it: {', '.join(lost)}", err=True)
+        say(f"left out, as a {ending} has no place for it: {', '.join(lost)}", err=True)
 
 
-def _check(recordings: list[Path], target: Path, source: str | None) -> None:
+def _check(recordings: list[Path], target: Path, source: str | None) -> str:
+    """Return the ending of the target that says who writes it, in small letters."""
+    from tactile_graph.errors import did_you_mean
     from tactile_graph.files import check_target
 
     kinds = installed().offered(OFFERS)
-    if target.suffix not in kinds:
-        raise click.UsageError(f"TARGET must end in {', '.join(kinds)}, got {target.name!r}")
+    name = target.name
+    fitting = [k for k in kinds if name.lower().endswith(k) and len(name) > len(k)]
+    if not fitting:
+        near = did_you_mean(target.suffix.lower(), kinds) if target.suffix else ""
+        raise click.UsageError(f"TARGET must end in {', '.join(kinds)}, got {name!r}{near}")
     if bool(recordings) == (source is not None):
         raise click.UsageError("give recordings before TARGET, or --source, and not both")
     if target.exists():
         raise click.UsageError(f"{target} is there already")
     check_target("TARGET", target)
+    check_targets([("TARGET", target)])
+    return max(fitting, key=len)
 
 
 def _frames(

@@ -143,6 +143,8 @@ def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
         say(f"    {command}")
     if len(works.names) > MOST_SHOWN:
         say(f"  and so do the pipelines {', '.join(works.names[MOST_SHOWN:])}")
+    for line in _offset_told(looked):
+        say(f"  {line}")
     levelled = _levelled(looked, works, settings)
     if levelled:
         say("  with one level for all frames, above the noise of the whole recording:")
@@ -154,6 +156,18 @@ def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
         say(f"  one sensor alone: add --with sensor={pasted(labels[0])}")
     if looked.pitch_assumed:
         say("  where the pitch is known, add --with pitch_cm=…: lengths are wrong without")
+
+
+def _offset_told(looked: Looked) -> Iterator[str]:
+    """Yield what takes off what cells read at rest, where that is much beside a press."""
+    from tactile_graph.plugins.registry import installed
+    from tactile_graph_sources.inspection.measure import SHARE_OF_PEAK
+
+    measured = looked.sensors[0].measured
+    height = measured.highest - measured.offset
+    if abs(measured.offset) > SHARE_OF_PEAK * height and installed().has("steps", "tare"):
+        yield "loads and centres, as contacts gives, are of whole readings, offset included;"
+        yield "a pipeline whose first step is tare takes it off, by frames of the empty pad first"
 
 
 def _commands(looked: Looked, works: _Works, settings: Sequence[str]) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping
@@ -92,7 +93,7 @@ def record(
     """
     from tactile_graph.cli.endings import NOT_DONE
     from tactile_graph.cli.interrupt import Ended, Interrupts, code_of, words_of
-    from tactile_graph.errors import TactileGraphError
+    from tactile_graph.errors import TactileGraphError, UsageError
     from tactile_graph.steps.injected import Report
     from tactile_graph_sources.commands.captured import captured
     from tactile_graph_sources.writers.write_store import StoreWriter
@@ -123,6 +124,8 @@ def record(
     if store is not None and (failure is None or store.n_written > store.n_before):
         _tell(store, report, by_port=source is None)
     if failure is not None:
+        if isinstance(failure, UsageError) and store is not None and target.exists():
+            say(f"'record --append {shlex.quote(str(target))}' goes on with it", err=True)
         raise failure
     if ended is not None and (store is None or isinstance(ended, Ended)):
         say(words_of(ended), err=True)

@@ -24,6 +24,8 @@ TOUCHED = 0.2
 STUCK, MOST_STUCK, FEWEST_TO_STICK = 0.05, 0.2, 30
 """Share of the peak above the offset at which a cell that never changes is stuck; the most of all
 such cells that can be; and the frames it takes."""
+FAR_BELOW = 10.0
+"""Spreads of how cells rest, by which one that never changes lies below them to be dead."""
 NOISY = 5.0
 ABOVE_NOISE = 5.0
 SHARE_OF_PEAK = 0.05
@@ -62,8 +64,9 @@ class Measured:
         Level of a cell at rest (its lowest tenth), the median of the cells and the distance of
         the tenth from the ninetieth percentile.
     dead, stuck, noisy, missing : tuple of (int, int)
-        Row and column, from 0, of cells that never change while those around them are pressed, of
-        those that rest far above the others, that are several times as noisy, that hold no value.
+        Row and column, from 0, of cells that never change while those around them are pressed, or
+        far below how these rest, of those that rest far above the others, that are several times
+        as noisy, that hold no value.
     n_contacts : tuple of int
         Patches of two cells or more above ``contact_level``, for each frame.
     contact_level : float
@@ -119,16 +122,19 @@ def measure(frames: Sequence[Frame]) -> Measured:
         idle = _idle(filled, known)
         values = stack[np.isfinite(stack)]
         step = _step(values)
+        silent = _silent(filled, idle, known, step or 0.0)
+        alive = known & ~silent
         sigma = _noise(filled, step or 0.0)
         lowest, highest = _ends(values)
         noise = (
-            None if sigma is None or not known.any() else float(np.quantile(sigma[known], QUIET))
+            None if sigma is None or not alive.any() else float(np.quantile(sigma[alive], QUIET))
         )
-        offset = float(np.median(idle[known])) if known.any() else 0.0
+        offset = float(np.median(idle[alive])) if alive.any() else 0.0
         level = max(ABOVE_NOISE * (noise or 0.0), SHARE_OF_PEAK * (highest - offset))
-        dead, stuck = _still(filled, idle, known, _Levels(offset, highest, noise or 0.0))
+        dead, stuck = _still(filled, idle, alive, _Levels(offset, highest, noise or 0.0))
+        dead |= silent
         pace = _pace(frames)
-        spread = np.quantile(idle[known], [0.1, 0.9]) if known.any() else np.zeros(2)
+        spread = np.quantile(idle[alive], [0.1, 0.9]) if alive.any() else np.zeros(2)
         lasting, n_lasting = _lasting(
             np.where(stuck, offset, idle) - offset, level, highest - offset
         )
@@ -145,7 +151,7 @@ def measure(frames: Sequence[Frame]) -> Measured:
             float(spread[1] - spread[0]),
             _cells(dead),
             _cells(stuck),
-            _cells(_noisy(sigma, noise, known & ~dead & ~stuck)),
+            _cells(_noisy(sigma, noise, alive & ~dead & ~stuck)),
             _cells(~known),
             tuple(_contacts(f - np.where(lasting, offset, idle), level) for f in filled),
             level,
@@ -243,6 +249,20 @@ def _still(
     between = (sides[0] & sides[1]) | (sides[2] & sides[3])
     around = sides.sum(axis=0) >= 0.75 * live.sum(axis=0)
     return still & ~raised & between & around, stuck
+
+
+def _silent(filled: Stack, idle: Stack, known: NDArray[np.bool_], step: float) -> NDArray[np.bool_]:
+    """Return which cells never change and rest far below those that do, if these are most.
+
+    They tell neither the offset nor the noise of the others.
+    """
+    still = known & (np.ptp(filled, axis=0) == 0.0)
+    moving = known & ~still
+    if len(filled) < FEWEST_FRAMES or moving.sum() <= still.sum():
+        return np.zeros_like(known)
+    rest = float(np.median(idle[moving]))
+    spread = max(MAD_TO_SD * float(np.median(np.abs(idle[moving] - rest))), step / np.sqrt(12.0))
+    return np.asarray(still & (rest - idle > FAR_BELOW * spread) & (idle < idle[moving].min()))
 
 
 def _beside(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:

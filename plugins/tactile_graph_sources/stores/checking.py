@@ -33,10 +33,14 @@ Mend = Callable[[Stored], object]
 
 
 class Finding(NamedTuple):
-    """One thing wrong with a store, and what mends it, if anything does."""
+    """One thing wrong with a store, and what mends it, if anything does.
+
+    Of what is only ``left`` by a writer that was cut short no frame suffers.
+    """
 
     text: str
     mend: Mend | None = None
+    left: bool = False
 
 
 def check(path: Path, repair: bool = False) -> Checked:
@@ -57,9 +61,13 @@ def check(path: Path, repair: bool = False) -> Checked:
         seen |= dict.fromkeys(f.text for f in found if f.mend)
         _repair(path, found)
         found = list(_findings(path))
-    left = {f.text for f in found}
-    about = _about(open_stored(path))
-    return Checked(about, tuple(f.text for f in found), tuple(t for t in seen if t not in left))
+    still = {f.text for f in found}
+    return Checked(
+        _about(open_stored(path)),
+        tuple(f.text for f in found if not f.left),
+        tuple(t for t in seen if t not in still),
+        tuple(f.text for f in found if f.left),
+    )
 
 
 STORES = FileCheck(is_store, check)
@@ -109,7 +117,9 @@ def _findings(path: Path) -> Iterator[Finding]:
     left = _leftovers(path)
     if left:
         n = len(left)
-        yield Finding(f"{n} file{'s' if n != 1 else ''} that a writer left unfinished", _sweep)
+        yield Finding(
+            f"{n} file{'s' if n != 1 else ''} that a writer left unfinished", _sweep, True
+        )
 
 
 def _of_parts(stored: Stored) -> Iterator[Finding]:
@@ -118,7 +128,8 @@ def _of_parts(stored: Stored) -> Iterator[Finding]:
         of_metadata = stored.journal.head is not None and METADATA in trouble
         yield Finding(trouble, rewrite_metadata if of_metadata else rewrite_journal)
     if stored.journal.cut_at is not None:
-        yield Finding("the last line of its journal was not finished", rewrite_journal)
+        text = "the last line of its journal was not finished"
+        yield Finding(text, rewrite_journal, left=not stored.troubles)
     if not stored.sure:
         yield Finding(UNSURE)
 
@@ -150,12 +161,16 @@ def _same(stored: Stored, name: str, told: Columns, low: int, high: int) -> bool
 
 
 def _of_rows(stored: Stored) -> Iterator[Finding]:
-    """Yield the arrays of which Zarr's metadata tell other lengths than there are frames."""
+    """Yield the arrays of which Zarr's metadata tell other lengths than there are frames.
+
+    A writer that is cut short has begun at most one more chunk.
+    """
     for name in stored.metadata:
         n = written_rows(read_metadata(stored.path, name))
         if name != NOTES and n is not None and n != stored.n_frames:
             text = f"{name}/{METADATA} tells of {n} frames, there are {stored.n_frames}"
-            yield Finding(text, rewrite_metadata)
+            left = stored.n_frames < n <= stored.n_frames + stored.chunk
+            yield Finding(text, rewrite_metadata, left)
 
 
 def _leftovers(path: Path) -> list[Path]:

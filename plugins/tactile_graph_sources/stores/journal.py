@@ -175,12 +175,17 @@ def lost_line(low: int, high: int, why: str) -> bytes:
 
 
 def append(path: Path, line: bytes) -> None:
-    """Add a line to the journal of a store, in one piece, and wait until it is on the disc."""
+    """Add a line to the journal of a store, or nothing, and wait until it is on the disc."""
     file = os.open(path / JOURNAL, os.O_WRONLY | os.O_APPEND)
     try:
-        while line:  # a full disc may take a part
-            line = line[os.write(file, line) :]
-        os.fsync(file)
+        end = os.fstat(file).st_size
+        try:
+            while line:  # a full disc may take a part
+                line = line[os.write(file, line) :]
+            os.fsync(file)
+        except BaseException:  # or the next line would be taken for the end of a part of this one
+            os.ftruncate(file, end)
+            raise
     finally:
         os.close(file)
 

@@ -320,9 +320,13 @@ def _note(frame: Frame) -> bytes:
 
 
 def _converted(path: Path, frames: Iterator[Frame], about: str) -> int:
-    with StoreWriter(path, about={"converted_from": about}) as store:
-        for frame in frames:
-            store.write(frame)
+    try:
+        with StoreWriter(path, about={"converted_from": about}) as store:
+            for frame in frames:
+                store.write(frame)
+    except Exception:  # half of a recording would pass for all of it
+        shutil.rmtree(path, ignore_errors=True)
+        raise
     return store.n_frames
 
 

@@ -42,11 +42,15 @@ def explain(
 
     span = Span(0, number + 1)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    with answered_meanwhile():
+    with answered_meanwhile() as meanwhile:
         result = _result(opened, only, seed, number)
     out = console()
     out.print(_heading(result))
     out.print(result_table(result))
+    told = "times are of a first frame: what is made, read or compiled once is in them"
+    if meanwhile is not None and meanwhile.under_way is not None:
+        told += "; slower plain code answered for kernels that are not compiled yet"
+    out.print(told, style="dim", soft_wrap=True)
     for node, text in result.notices.items():
         out.print(f"notice  {node}: {text}", style="yellow", soft_wrap=True)
     if any(isinstance(result.outcome(name), Failed) for name in result.plan.asked):

@@ -376,6 +376,10 @@ class _Run:
             self._finish_lines()
             came = self.interrupted
             self.tally.close(self.people, self.report, words_of(came) if came else "")
+            if self.runner.n_states == self.tally.n > 1:
+                text = f"steps that keep state began anew with each of {self.tally.n} recordings"
+                text += " of one frame; their folder is read as one recording"
+                self.people.print(text, style="yellow", soft_wrap=True)
             drawn = self.drawing is not None and self.drawing.save(self.stderr)
             if self.drawing is not None:
                 self.interrupted = came or self.drawing.interrupted
@@ -395,8 +399,13 @@ class _Run:
             )
 
     def _keeps(self) -> bool:
-        """Return whether what is written stays if the run ends here."""
-        return self.lines is not None and getattr(self.lines, "keeps", True)
+        """Return whether what is written stays if the run ends here.
+
+        Where the writer does not say it, the file tells: it is there, or is not yet.
+        """
+        if self.lines is None or self.output is None:
+            return False
+        return bool(getattr(self.lines, "keeps", Path(self.output.name).exists()))
 
     def _finish_lines(self) -> None:
         """Close what is written and say beside it how it was made; the first trouble stands."""

@@ -169,7 +169,7 @@ def _show_table(out: Any, kind: str, table: KeyTable) -> None:
     shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     shown.add_column("key", style="cyan", no_wrap=True)
     for head in ("holds", "default", ""):
-        shown.add_column(head)
+        shown.add_column(head, overflow="fold")
     for key in table.keys:
         shown.add_row(*(Text(cell) for cell in key))
     out.print(Padding(shown, (0, 0, 0, 2)))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -12,8 +12,13 @@ from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
+    from rich.text import Text
 
     from tactile_graph.cli.pages.search import Entry, Hit
+
+
+NARROW = 80
+"""Columns of a terminal below which a step's ports and words stand under its name."""
 
 
 def complete_step(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
@@ -35,6 +40,10 @@ def steps(words: tuple[str, ...], search: bool) -> None:
     found = registry.installed()
     out = console()
     if not words:
+        if out.width < NARROW:
+            for step in _listed(found):
+                out.print(step)
+            return
         out.print(_list(found))
     elif len(words) == 1 and not search and found.has("steps", words[0]):
         from tactile_graph.cli.pages.step_page import step_page
@@ -45,26 +54,48 @@ def steps(words: tuple[str, ...], search: bool) -> None:
         out.print(_hits(found, words))
 
 
+def _listed(found: registry.Registry) -> Iterator[RenderableType]:
+    """Yield each plugin's name, and its steps with what belongs to each beneath it."""
+    from rich.padding import Padding
+    from rich.text import Text
+
+    for plugin in sorted(found.plugins, key=lambda p: p.name):
+        if plugin.offers.get("steps"):
+            yield Text(plugin.name, style="bold cyan")
+        for name, target in sorted(plugin.offers.get("steps", {}).items()):
+            yield Padding(Text(name, style="bold"), (0, 0, 0, 2), expand=False)
+            for told in _told(target):
+                yield Padding(told, (0, 0, 0, 4), expand=False)
+
+
+def _told(target: Any) -> tuple[Text, Text]:
+    """Return what a step takes and gives, and what it does, or what is wrong with it."""
+    from rich.text import Text
+
+    from tactile_graph.plugins.outline import outline
+
+    step = outline(target)
+    what = Text(step.trouble, style="red") if step.trouble else Text(_what(step.summary))
+    return Text(step.wiring, style="dim"), what
+
+
 def _list(found: registry.Registry) -> RenderableType:
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
-    from tactile_graph.plugins.outline import outline
-
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("step", no_wrap=True)
     table.add_column("takes → gives", overflow="fold")
-    table.add_column("what")
+    table.add_column("what", overflow="fold")
     for plugin in sorted(found.plugins, key=lambda p: p.name):
         names = sorted(plugin.offers.get("steps", {}))
         if names:
             table.add_row(Text(plugin.name, style="bold cyan"), "", "")
         for i, name in enumerate(names):
-            step = outline(plugin.offers["steps"][name])
-            what = Text(step.trouble, style="red") if step.trouble else Text(_what(step.summary))
-            table.add_row(Text(f"  {name}", style="bold"), Text(step.wiring, style="dim"), what,
-                          end_section=i == len(names) - 1)  # fmt: skip
+            told = _told(plugin.offers["steps"][name])
+            last = i == len(names) - 1
+            table.add_row(Text(f"  {name}", style="bold"), *told, end_section=last)
     return table
 
 
@@ -99,8 +130,8 @@ def _hit_table(hits: Sequence[Hit]) -> RenderableType:
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("step", style="bold", no_wrap=True)
-    table.add_column("what")
-    table.add_column("settings about it", style="cyan")
+    table.add_column("what", overflow="fold")
+    table.add_column("settings about it", style="cyan", overflow="fold")
     for hit in hits:
         what = Text(_what(hit.entry.about))
         table.add_row(Text(hit.entry.name), what, Text(", ".join(hit.parts)))

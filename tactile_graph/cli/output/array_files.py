@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import io
 import os
 import shutil
 import sys
@@ -63,8 +64,39 @@ class Container(Protocol):
     def array(self, name: str, row: tuple[int, ...], cells: Cells, about: dict[str, Any]) -> Any:
         """Return a new array without rows, in groups by the slashes of its name."""
 
+    def check(self) -> None:
+        """Raise what the system refused to write so far, as an OSError."""
+
     def close(self) -> None:
-        """Let go of the file."""
+        """Let go of the file; raises as `check` does."""
+
+
+class _Patient(io.FileIO):
+    """A file for HDF5, whose library crashes when it closes one that it could not write.
+
+    It is told that all went well; ``refused`` is the first error.
+    """
+
+    refused: OSError | None = None
+
+    def write(self, data: Any, /) -> int:
+        """Write all of the data, or nothing more."""
+        left = memoryview(data).cast("B")
+        size = len(left)
+        try:
+            while left and self.refused is None:
+                left = left[super().write(left) :]
+        except OSError as error:
+            self.refused = error
+        return size
+
+    def truncate(self, size: int | None = None, /) -> int:
+        """Make it as long as told."""
+        try:
+            return super().truncate(size)
+        except OSError as error:
+            self.refused = self.refused or error
+            return size or 0
 
 
 class Hdf5:
@@ -81,7 +113,8 @@ class Hdf5:
             import h5py
         except ImportError:
             raise UsageError("HDF5 files need h5py: pip install 'tactile-graph[hdf5]'") from None
-        self._file = h5py.File(path, "w")
+        self._written = _Patient(path, "w+")
+        self._file = h5py.File(self._written, "w")
         self._file.attrs.update(about)
 
     def array(self, name: str, row: tuple[int, ...], cells: Cells, about: dict[str, Any]) -> Any:
@@ -93,9 +126,16 @@ class Hdf5:
         made.attrs.update(about)
         return made
 
+    def check(self) -> None:
+        """Raise what the system refused to write so far."""
+        if self._written.refused is not None:
+            raise self._written.refused
+
     def close(self) -> None:
         """Let go of the file."""
         self._file.close()
+        self._written.close()
+        self.check()
 
 
 class Zarr:
@@ -120,6 +160,9 @@ class Zarr:
             name, shape=(0, *row), chunks=(cells.chunk, *row), dtype=cells.dtype,
             fill_value=cells.fill, attributes=about,
         )  # fmt: skip
+
+    def check(self) -> None:
+        """Do nothing: Zarr raises by itself."""
 
     def close(self) -> None:
         """Do nothing: every chunk is a file of its own."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -145,6 +145,7 @@ class ImageStore:
             self._index.add(result.frame.index)
             time_s = result.frame.time_s
             self._time.add(np.nan if time_s is None else time_s)
+            self._container.check()
 
     def close(self) -> None:
         """Write what is left, and give the stacks their name."""
@@ -166,6 +167,8 @@ class ImageStore:
                 yield
         except BaseException:
             self.broken = True
+            with suppress(Exception):  # what it raises is of a file that goes
+                self._container.close()
             remove(self._part)
             raise
 

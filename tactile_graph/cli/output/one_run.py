@@ -64,7 +64,7 @@ def refuse_if_written(output: str) -> None:
 
 def refused(output: str) -> UsageError:
     """Return what is said of an output that another run is writing."""
-    return UsageError(f"-o {output}: another run is writing it")
+    return UsageError(f"-o {output}: another run is writing it, or another program has locked it")
 
 
 def _alone(file: FileIO) -> bool:

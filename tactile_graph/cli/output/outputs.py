@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from tactile_graph.errors import UsageError, did_you_mean
-from tactile_graph.exporter import Export, Exporter, Writer
+from tactile_graph.errors import PluginError, TactileGraphError, UsageError, did_you_mean
+from tactile_graph.exporter import Export, Exporter, Writer, write_block
 from tactile_graph.plugins.registry import installed
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph.api.result import Result
+    from tactile_graph.engine.blocks.block import Block
     from tactile_graph.engine.tables.table import Table
 
 OFFERS = "exporters"
@@ -66,7 +70,8 @@ class Output:
 
     def check(self) -> None:
         """Refuse what could not be written in the end, before the work."""
-        self.exporter.check(self.name)
+        with self._named("check"):
+            self.exporter.check(self.name)
 
     def writer(self, pipeline: Pipeline, asked: tuple[str, ...]) -> tuple[Writer, Table | None]:
         """Return who writes it, and the table it is, if it is one."""
@@ -76,7 +81,52 @@ class Output:
 
             table = make_table(pipeline, asked, self.long)
         export = Export(self.name, pipeline, asked, self.full, table)
-        return self.exporter.opened(export), table
+        with self._named("opened"):
+            writer = self.exporter.opened(export)
+        return _Named(writer, self._named), table
+
+    @contextmanager
+    def _named(self, what: str) -> Iterator[None]:
+        """Name the exporter, its plugin and the file in errors that are none of ours."""
+        try:
+            yield
+        except (TactileGraphError, BrokenPipeError, MemoryError):
+            raise
+        except Exception as error:  # a plugin's own code may raise anything
+            from tactile_graph.engine.outcomes.notices import breaks
+
+            who = (
+                f"exporter {self.ending!r} of {installed().offer(OFFERS, self.ending).plugin.label}"
+            )
+            raise PluginError(f"-o {self.name}: {who}: {breaks(what, error)}") from error
+
+
+class _Named:
+    """An exporter's writer, whose errors name it."""
+
+    def __init__(
+        self, writer: Writer, named: Callable[[str], AbstractContextManager[None]]
+    ) -> None:
+        self._writer = writer
+        self._named = named
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._writer, name)  # broken and keeps, where it has them
+
+    def write(self, result: Result) -> None:
+        """Take in a frame."""
+        with self._named("write"):
+            self._writer.write(result)
+
+    def write_block(self, block: Block[Result]) -> None:
+        """Take in several frames."""
+        with self._named("write"):
+            write_block(self._writer, block)
+
+    def close(self) -> None:
+        """Write what is left."""
+        with self._named("close"):
+            self._writer.close()
 
 
 def forms() -> list[str]:

@@ -110,11 +110,8 @@ class ParquetFile:
         units = units_of(self._table, self._quantities)
         if units == self._units:
             return
-        with tempfile.TemporaryFile() as copy:
-            _told_anew(self._pyarrow, str(self._part), copy, self._schema_of(units))
-            copy.seek(0)
-            with self._part.open("wb") as file:
-                shutil.copyfileobj(copy, file)
+        with self._part.open("r+b") as file:
+            _tell_anew(self._pyarrow, file, self._schema_of(units))
 
     def _schema_of(self, units: dict[str, str]) -> Any:
         arrow = self._pyarrow
@@ -168,15 +165,21 @@ def _short(number: int) -> str:
     return str(number) if abs(number) < 10**40 else f"a number of {number.bit_length()} bits"
 
 
-def _told_anew(arrow: Any, source: str, target: BinaryIO, schema: Any) -> None:
-    """Write a file's groups again, with other units in their fields."""
-    with (
-        arrow.parquet.ParquetFile(source) as file,
-        _writer(arrow, target, schema) as writer,
-    ):
-        for i in range(file.num_row_groups):
-            group = file.read_row_group(i)
-            writer.write_table(group.cast(schema), row_group_size=max(group.num_rows, 1))
+def _tell_anew(arrow: Any, file: BinaryIO, schema: Any) -> None:
+    """Write a file anew in place, with other units in its fields."""
+    file.flush()
+    with tempfile.TemporaryFile() as copy:
+        with (
+            arrow.parquet.ParquetFile(str(file.name)) as before,
+            _writer(arrow, copy, schema) as writer,
+        ):
+            for i in range(before.num_row_groups):
+                group = before.read_row_group(i)
+                writer.write_table(group.cast(schema), row_group_size=max(group.num_rows, 1))
+        copy.seek(0)
+        file.seek(0)
+        file.truncate()
+        shutil.copyfileobj(copy, file)
 
 
 def _writer(arrow: Any, where: str | BinaryIO, schema: Any) -> Any:
@@ -244,7 +247,7 @@ def _joined(parts: Iterator[bytes], file: BinaryIO) -> None:
         if n_held or first.num_rows == 0:
             writer.write_table(arrow.concat_tables(held))
     if agreed != units:
-        _correct_joined(arrow, file, _with_units(arrow, first.schema, agreed))
+        _tell_anew(arrow, file, _with_units(arrow, first.schema, agreed))
 
 
 def units_in(schema: Any) -> dict[str, str]:
@@ -260,17 +263,6 @@ def _with_units(arrow: Any, schema: Any, units: dict[str, str]) -> Any:
     told = [f.with_metadata({"unit": units[f.name]}) if f.name in units else f.remove_metadata()
             for f in schema]  # fmt: skip
     return arrow.schema(told)
-
-
-def _correct_joined(arrow: Any, file: BinaryIO, schema: Any) -> None:
-    """Write a file anew in place, with the units on which its parts agree."""
-    file.flush()
-    with tempfile.TemporaryFile() as copy:
-        _told_anew(arrow, file.name, copy, schema)
-        copy.seek(0)
-        file.seek(0)
-        file.truncate()
-        shutil.copyfileobj(copy, file)
 
 
 PARQUET = Exporter("Parquet", "numbers", _opened, _check, _joined)

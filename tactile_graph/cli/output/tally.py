@@ -15,6 +15,7 @@ from rich.text import Text
 
 from tactile_graph.api.result import Result
 from tactile_graph.cli.output.live_table import shown
+from tactile_graph.compiled.preparing import WORTH_A_LINE_S, preparing
 from tactile_graph.engine.blocks.block import Block
 from tactile_graph.engine.outcomes.notices import assumed_by, notices
 from tactile_graph.engine.outcomes.outcome import Failed, Skipped, item_words
@@ -128,6 +129,8 @@ class Tally:
         By output and quantity, against the truth.
     started, seconds : float
         On the clock of `time.perf_counter`, and from then to the last frame.
+    prepared_s : float
+        Time that the compiler had taken before.
     """
 
     outputs: list[OutputColumns]
@@ -146,6 +149,7 @@ class Tally:
     errors: dict[str, dict[str, _Error]] = field(default_factory=dict)
     started: float = field(default_factory=time.perf_counter)
     seconds: float = 0.0
+    prepared_s: float = field(default_factory=lambda: preparing.spent_s)
 
     def add(self, result: Result) -> None:
         """Count a frame."""
@@ -366,11 +370,15 @@ class Tally:
             yield _labelled("skipped", "yellow", text)
 
     def _last(self, interrupted: str) -> Text:
-        rate = f" ({self.n / self.seconds:.4g} a second)" if self.seconds > 0 and self.n else ""
+        compiling_s = preparing.spent_s - self.prepared_s
+        told, running_s = "", self.seconds
+        if compiling_s > WORTH_A_LINE_S:
+            told, running_s = f", {compiling_s:.1f} s of it compiling", running_s - compiling_s
+        rate = f" ({self.n / running_s:.4g} a second)" if running_s > 0 and self.n else ""
         frames = "frame" if self.n == 1 else "frames"
         text = Text.assemble(
             (f"{interrupted}: " if interrupted else "", "bold red"),
-            (f"{self.n} {frames} in {self.seconds:.2f} s{rate}", "bold"),
+            (f"{self.n} {frames} in {self.seconds:.2f} s{told}{rate}", "bold"),
         )
         if not self.n:
             return text

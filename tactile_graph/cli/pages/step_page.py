@@ -74,7 +74,7 @@ def _table(title: str, heads: tuple[str, ...], rows: list[Row]) -> Iterator[Rend
     kept = [i for i in range(len(heads)) if any(row[i] for row in rows)]
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_header=any(heads[i] for i in kept))
     for i in kept:
-        table.add_column(heads[i], style="cyan" if i == 0 else "", no_wrap=i == 0)
+        table.add_column(heads[i], style="cyan" if i == 0 else "", no_wrap=i == 0, overflow="fold")
     for row in rows:
         table.add_row(*(Text(row[i]) for i in kept))
     yield Padding(table, (0, 0, 0, 2))
@@ -103,6 +103,8 @@ def _grid(grid: Grid) -> str:
         parts.append(f"pitch {grid.pitch_cm:g} cm")
     if grid.min_rows > 1 or grid.min_columns > 1:
         parts.append(f"at least {grid.min_rows} x {grid.min_columns} cells")
+    if grid.square_to is not None:
+        parts.append(f"cells square to {grid.square_to:.0%}" if grid.square_to else "square cells")
     return ", ".join(parts)
 
 

@@ -6,11 +6,7 @@ import math
 from collections import Counter
 from typing import Any
 
-from tactile_graph.cli.summary.quantiles import Numbers
 from tactile_graph.cli.summary.summary import SHARES, Group, Quantity, Summary
-
-TURNS = ("°", "rad")
-"""Units of angles, whose mean is none where they wrap."""
 
 
 def as_data(summary: Summary) -> dict[str, Any]:
@@ -48,25 +44,20 @@ def _name(quantity: Quantity) -> str:
 
 
 def _numbers(group: Group, quantity: Quantity) -> dict[str, Any]:
-    numbers = group.numbers[quantity]
+    numbers, found = group.numbers[quantity], group.statistics(quantity)
     told = {
         "unit": quantity.unit,
         "n": numbers.n,
         "not_finite": numbers.n_not_finite,
-        "mean": mean_of(numbers, quantity.unit),
-        "least": numbers.least,
-        "most": numbers.most,
+        "mean": found.mean,
+        "least": found.least,
+        "most": found.most,
     }
     if quantity in group.signed:
         told["bias"] = group.signed[quantity].mean
-    for share, value in zip(SHARES, numbers.quantiles(SHARES), strict=True):
+    for share, value in zip(SHARES, found.quantiles, strict=True):
         told["median" if share == 0.5 else f"p{100 * share:g}"] = float(value)
     return {k: _known(v) for k, v in told.items()}
-
-
-def mean_of(numbers: Numbers, unit: str) -> float:
-    """Return the mean; NaN of angles, which have none."""
-    return math.nan if unit in TURNS else numbers.mean
 
 
 def _known(value: Any) -> Any:

@@ -6,16 +6,14 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
 from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from tactile_graph.cli.output.live_table import shown
-from tactile_graph.cli.summary.as_data import mean_of
 from tactile_graph.cli.summary.quantiles import Numbers
-from tactile_graph.cli.summary.summary import Group, Quantity, Summary, kind
+from tactile_graph.cli.summary.summary import SHARES, Group, Quantity, Summary, kind
 from tactile_graph.vocabulary import words_and_unit
 
 MOST_REASONS = 5
@@ -96,9 +94,9 @@ def _quantities(console: Console, summary: Summary) -> None:
     rows, styles = [], []
     for quantity in quantities:
         numbers, unit = told[quantity], quantity.unit
-        p5, median, p95 = numbers.quantiles((0.05, 0.5, 0.95))
-        ends = (numbers.least, numbers.most) if numbers.n else (math.nan, math.nan)
-        cells = (mean_of(numbers, unit), p5, median, p95, *ends)
+        found = summary.all.statistics(quantity)
+        p5, median, p95 = (found.quantiles[SHARES.index(share)] for share in (0.05, 0.5, 0.95))
+        cells = (found.mean, p5, median, p95, found.least, found.most)
         n = str(numbers.n) + (
             f" (+{numbers.n_not_finite} no number)" if numbers.n_not_finite else ""
         )
@@ -191,9 +189,10 @@ def _first_place(told: dict[Quantity, Numbers], quantity: Quantity) -> int:
 
 
 def _median(group: Group, quantity: Quantity) -> str:
-    numbers = group.numbers.get(quantity)
-    value = np.nan if numbers is None else float(numbers.quantiles(0.5))
-    return _cell(value, quantity.unit)
+    if quantity not in group.numbers:
+        return ""
+    median = group.statistics(quantity).quantiles[SHARES.index(0.5)]
+    return _cell(float(median), quantity.unit)
 
 
 def _stacked(quantity: Quantity) -> str:

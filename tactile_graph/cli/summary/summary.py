@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 
 from tactile_graph.cli.summary.quantiles import Numbers
 from tactile_graph.cli.summary.reading import LEAD, Chunk, Column, Lines, as_float, is_long
-from tactile_graph.vocabulary import UNITS, words_and_unit
+from tactile_graph.vocabulary import UNITS, error_name, words_and_unit
 
 LONG = ("output", "item", "outcome", "type")
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
+HALF_TURN = {"°": 180.0, "rad": math.pi}
+"""By unit of an angle; axes, as those of shapes, wrap at a quarter to either side of 0."""
 MOST_WORDS = 1000
 """How many different reasons or texts are told apart."""
 OTHERS = "(others)"
@@ -31,6 +33,15 @@ class Quantity(NamedTuple):
     key: str
     unit: str
     """"" where the numbers are bare, or nobody told it."""
+
+
+class Statistics(NamedTuple):
+    """What numbers come to; NaN what there is none of. ``quantiles`` are those at `SHARES`."""
+
+    mean: float
+    least: float
+    most: float
+    quantiles: NDArray[np.float64]
 
 
 @dataclass
@@ -65,6 +76,8 @@ class Group:
     """Errors by their size."""
     signed: dict[Quantity, Numbers] = field(default_factory=dict)
     """Errors with their sign, where they have one."""
+    turned: dict[Quantity, Numbers] = field(default_factory=dict)
+    """Angles below 0, errors apart, by half a turn more: those of axes that lie across the pad."""
     texts: dict[str, Counter[str]] = field(default_factory=dict)
     _last_frame: float = math.nan
 
@@ -91,11 +104,36 @@ class Group:
         if "_error_" in key:
             self.signed.setdefault(quantity, Numbers()).add(told)
             told = np.abs(told)
+        elif unit in HALF_TURN:
+            turned = np.where(told < 0.0, told + HALF_TURN[unit], told)
+            self.turned.setdefault(quantity, Numbers()).add(turned)
         self.numbers.setdefault(quantity, Numbers()).add(told)
+
+    def statistics(self, quantity: Quantity) -> Statistics:
+        """Return what the numbers of a quantity come to.
+
+        Angles have no mean. Those of axes are taken from where fewest lie, so that 88, 90 and -88
+        degrees are 88, 90 and 92; where they lie all around, they have no order either.
+        """
+        numbers, half_turn = self.numbers[quantity], HALF_TURN.get(quantity.unit)
+        mean, turned = numbers.mean, self.turned.get(quantity)
+        widest = math.inf
+        if half_turn is not None:
+            mean = math.nan
+        if half_turn is not None and turned is not None and numbers.n:
+            axes = max(-numbers.least, numbers.most) <= 0.5 * half_turn
+            if axes and turned.most - turned.least < numbers.most - numbers.least:
+                numbers = turned
+            widest = 0.5 * half_turn if axes else half_turn
+        quantiles = numbers.quantiles(SHARES)
+        if quantiles[-1] - quantiles[0] > widest:
+            return Statistics(mean, math.nan, math.nan, np.full(len(SHARES), math.nan))
+        ends = (numbers.least, numbers.most) if numbers.n else (math.nan, math.nan)
+        return Statistics(mean, *ends, quantiles)
 
     def spoken_for(self, units: Mapping[str, str]) -> None:
         """Give the numbers of columns that no unit was told of the one that is told of others."""
-        for table in (self.numbers, self.signed):
+        for table in (self.numbers, self.signed, self.turned):
             for quantity in [q for q in table if not q.unit and q.key in units]:
                 numbers, other = table.pop(quantity), Quantity(quantity.key, units[quantity.key])
                 if other in table:
@@ -105,8 +143,9 @@ class Group:
 
     def compress(self) -> None:
         """Take little memory from now on."""
-        for numbers in (*self.numbers.values(), *self.signed.values()):
-            numbers.compress()
+        for table in (self.numbers, self.signed, self.turned):
+            for numbers in table.values():
+                numbers.compress()
 
     def ended(self, how: str) -> int:
         """Return how many outcomes are ``ok``, ``skipped`` or ``failed``."""
@@ -199,8 +238,7 @@ class Summary:
                     _gather(output, item, numbers, texts)
             for output, errors in row.get("errors", {}).items():
                 for error, value in errors.items():
-                    head, _, unit = error.rpartition("_")
-                    _gather(f"{output}.{head}_error_{unit}", value, numbers, texts)
+                    _gather(f"{output}.{error_name(error)}", value, numbers, texts)
         frames = np.array([as_float(row.get("frame", np.nan)) for row in rows])
         times = np.array([as_float(row.get("time_s", np.nan)) for row in rows])
         for group in groups:

@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_graph.engine.calls.context import Context
 from tactile_graph.engine.calls.each import for_each, mapped, told_of_gaps
-from tactile_graph.engine.calls.isolated import isolated_step
+from tactile_graph.engine.calls.isolated import Host, Isolated, isolated_step
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.steps.signature import Kind
 
@@ -19,23 +19,52 @@ Call = Callable[..., Any]
 
 
 def make_call(node: Node, context: Context) -> Call:
-    """Return the callable of a node's ports within a context; stateful steps get a new instance."""
+    """Return the callable of a node's ports within a context; stateful steps get new instances.
+
+    A step that keeps state has an instance for each label of frames: what one recording or sensor
+    has shown says nothing of another. One that gives no value has a single one: it may write a
+    file.
+    """
     if node.kind is NodeKind.MAP:
         return mapped(node, context)
-    call = _seeded(node, context)
-    assert node.signature is not None
-    if node.signature.gap:
-        call = _with_gap(call, node.signature.gap, context)
+    call = _instance(node, context, context.hosts)
+    if isinstance(call, Isolated):
+        context.apart[node.name] = call.host
+    by_label = node.stateful and not node.is_sink
+    call = _by_label(node, call, context) if by_label else call
     call = told_of_gaps(node, call)
     return for_each(node, call, context) if node.each else call
 
 
-def _bound(node: Node, context: Context, **injected: Any) -> Call:
+def _by_label(node: Node, first: Call, context: Context) -> Call:
+    """Return what calls the instance of the label that is under way; ``first`` is not used yet."""
+    instances: dict[str, Call] = {}
+    hosts = context.hosts
+    if node.isolation is not None:  # all run in its process
+        hosts = {node.isolation.process: context.apart[node.name]}
+
+    def call(*args: Any, **kwargs: Any) -> Any:
+        label = context.frame.label
+        instance = instances.get(label)
+        if instance is None:
+            instance = _instance(node, context, hosts) if instances else first
+            instances[label] = instance
+            context.labels.add(label)
+        return instance(*args, **kwargs)
+
+    return call
+
+
+def _instance(node: Node, context: Context, hosts: dict[str, Host]) -> Call:
+    call = _seeded(node, context, hosts)
+    assert node.signature is not None
+    return _with_gap(call, node.signature.gap, context) if node.signature.gap else call
+
+
+def _bound(node: Node, hosts: dict[str, Host], **injected: Any) -> Call:
     """Return a node's step with its settings, as what costs least to call in every frame."""
     if node.isolation is not None:
-        step = isolated_step(node, injected, context.hosts)
-        context.apart[node.name] = step.host
-        return step
+        return isolated_step(node, injected, hosts)
     bound: Any = node.bound(**injected)
     assert node.signature is not None
     call: Call = bound.__call__ if node.signature.kind is Kind.CLASS else bound
@@ -58,15 +87,15 @@ def _with_defaults(step: partial[Any]) -> Call:
     return copy
 
 
-def _seeded(node: Node, context: Context) -> Call:
+def _seeded(node: Node, context: Context, hosts: dict[str, Host]) -> Call:
     signature = node.signature
     assert signature is not None
     if not signature.rng:
-        return _bound(node, context)
+        return _bound(node, hosts)
     words = [context.seed, int(node.key[:16], 16)]
     if signature.rng_at_init:
-        return _bound(node, context, **{signature.rng: np.random.default_rng(words)})
-    step = _bound(node, context)
+        return _bound(node, hosts, **{signature.rng: np.random.default_rng(words)})
+    step = _bound(node, hosts)
 
     def call(*args: Any, **kwargs: Any) -> Any:
         # Of the frame's number too: a frame gets the same numbers wherever a run starts.

@@ -26,7 +26,8 @@ class Context:
     """
 
     __slots__ = (
-        "apart", "embedded", "frame", "hosts", "inner_results", "item", "item_failures", "seed",
+        "apart", "embedded", "frame", "hosts", "inner_results", "item", "item_failures", "labels",
+        "seed",
     )  # fmt: skip
 
     def __init__(
@@ -38,6 +39,8 @@ class Context:
         self.item: tuple[int, ...] = ()
         self.inner_results: dict[str, list[Outcomes | None]] = {}
         self.item_failures: list[Failed] = []
+        self.labels: set[str] = set()
+        """Of the frames that steps have kept state of."""
         self.hosts: dict[str, Host] = {}
         """Processes that nodes of the runner which is being made share."""
         self.apart: dict[str, Host] = {}

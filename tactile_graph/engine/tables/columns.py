@@ -18,7 +18,7 @@ from tactile_graph.engine.tables.truth import error_names, errors_against, neare
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.wiring import arms, field_type, public_fields
 from tactile_graph.steps.signature import list_item
-from tactile_graph.vocabulary import words_and_unit
+from tactile_graph.vocabulary import error_name, words_and_unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,8 +113,7 @@ def _column(output: str, key: str, kind: type) -> Column:
 
 
 def _error_column(output: str, error: str) -> Column:
-    head, _, unit = error.rpartition("_")
-    return Column(f"{output}.{head}_error_{unit}", output, *words_and_unit(error), float, error)
+    return Column(f"{output}.{error_name(error)}", output, *words_and_unit(error), float, error)
 
 
 def values_of(result: Outcomes, columns: OutputColumns) -> dict[str, Any]:

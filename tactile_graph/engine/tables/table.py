@@ -32,7 +32,7 @@ from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.wiring import arms, public_fields
 from tactile_graph.quantities import unit_of
 from tactile_graph.steps.signature import list_item
-from tactile_graph.vocabulary import words_and_unit
+from tactile_graph.vocabulary import error_name, words_and_unit
 from tactile_graph.wires.stacks import Stack
 
 Row = dict[str, Any]
@@ -263,9 +263,7 @@ def _columns_of_part(part: _Part, kind: Any, told: Told) -> Iterator[Column]:
         for column in columns_of_type(part.output, arm, told):
             yield replace(column, key=_key(column.key, part.output))
     for error in error_names(of):
-        head, _, unit = error.rpartition("_")
-        key = f"{head}_error_{unit}"
-        yield Column(key, part.output, *words_and_unit(error), float, error)
+        yield Column(error_name(error), part.output, *words_and_unit(error), float, error)
 
 
 def _key(key: str, output: str) -> str:
@@ -281,8 +279,7 @@ def _cells(value: Any, result: Outcomes) -> Row:
     row["type"] = (shape or type(value)).__name__
     true = nearest(value, result.frame.truth)
     for error, off in errors_against(value, true).items() if true is not None else ():
-        head, _, unit = error.rpartition("_")
-        row[f"{head}_error_{unit}"] = off
+        row[error_name(error)] = off
     return row
 
 

@@ -32,6 +32,15 @@ def hello(fail, crash):
     click.echo("hello")
     return 5
 
+@click.group()
+def duo():
+    """Do either."""
+
+@duo.command()
+def crash():
+    """Crash."""
+    raise KeyError("pad")
+
 not_a_command = 3
 '''
 COMMAND_OF = {
@@ -40,6 +49,7 @@ COMMAND_OF = {
     "lost": "tg_no_such_module:x",
     "number": "tg_test_commands:not_a_command",
     "run": "tg_test_commands:hello",
+    "duo": "tg_test_commands:duo",
 }
 
 
@@ -85,7 +95,7 @@ def test_a_plugins_command_runs_takes_the_shared_options_and_returns_no_exit_cod
         ),
         (["helo"], "no command named 'helo'; did you mean 'hello'?"),
         (["drawing"], "no command named 'drawing'; 'graph' is about 'draw'"),
-        (["xyzzy"], "no command named 'xyzzy'; there are: check, explain, gone,"),
+        (["xyzzy"], "no command named 'xyzzy'; there are: check, duo, explain, gone,"),
         (["--plugins", "hnad", "run"], "--plugins: no plugin named 'hnad'; did you mean 'hand'?"),
         (["run", "--plugins", "hnad"], "--plugins: no plugin named 'hnad'; did you mean 'hand'?"),
     ],
@@ -95,6 +105,23 @@ def test_every_mistake_is_a_line_on_stderr_and_exit_code_2(args, message):
     assert got.exit_code == 2
     assert message in got.stderr
     assert "Traceback" not in got.output
+
+
+@pytest.mark.usefixtures("with_commands")
+def test_a_plugins_bare_group_is_a_command_as_any():
+    alone = call("duo")
+    assert (alone.exit_code, alone.stdout) == (2, "")
+    assert alone.stderr == call("duo", "--help").stdout
+    assert "(--debug shows where)" in call("duo", "crash").stderr
+    assert "Traceback" in call("duo", "crash", "--debug").stderr
+    assert "did you mean 'hand'?" in call("duo", "crash", "--plugins", "hnad").stderr
+
+
+def test_a_command_that_is_not_there_may_be_of_a_plugin_that_is_down(hand_made, monkeypatch):
+    install(monkeypatch, hand_made, ("torn", "torn-package", "0.3", broken_plugin))
+    told = "(plugins failed to load: torn; 'tactile-graph plugins' says why)"
+    assert told in call("wobble").stderr
+    assert "torn  No module named 'antigravity'" in call("--help").stdout
 
 
 def test_without_a_command_the_help_says_what_there_is():
@@ -315,6 +342,7 @@ def test_a_file_that_ends_too_early_is_no_ctrl_d(monkeypatch):
 @pytest.mark.usefixtures("hand_made")
 def test_explain_shows_values_and_times_of_what_ran():
     got = call("explain", "discs", "--frame", 2)
+    assert "\ntimes are of a first frame: what is made, read or compiled once is in" in got.stdout
     assert got.exit_code == 0
     assert "discs, frame 2 of made: 4 x 6 volt, total 4" in got.stdout
     rows = {line.split()[0]: line for line in got.stdout.splitlines() if line.strip()}

@@ -18,6 +18,17 @@ pytestmark = pytest.mark.usefixtures("hand_made")
     [
         (["discs"], "no command named 'discs'; a pipeline is run by 'cli run discs'"),
         (["x.yaml"], "a pipeline is run by 'cli run x.yaml'"),
+        (["x.csv"], "a pipeline is run over recordings by 'cli run PIPELINE x.csv'"),
+        (["x.csv", "discs"], "a pipeline is run over recordings by 'cli run discs x.csv'"),
+        (["help", "run"], "no command named 'help'; it is an option: 'cli run --help'"),
+        (["--seed", "3", "run"], "a command's options stand behind it: 'cli run --seed …'"),
+        (["run", "-help"], "did you mean '--help'?"),
+        (["run", "http://a.org/x.yaml"], "only files of this machine are read: download it first"),
+        (["run", "~/x.yaml"], f"where it is not quoted: {Path('~/x.yaml').expanduser()}"),
+        (["run", "*.yaml"], "no pipeline file '*.yaml'; no file fits this pattern"),
+        (["run", "-"], "standard input is /dev/stdin"),
+        (["run", "discs", "discs"], "'discs' is a pipeline, and no recording is called so"),
+        (["run", "discs", "circle.crash=1"], "a setting is given by --set circle.crash=1"),
         (["run", "discs", "--frames", "9" * 30], "more frames than can be counted"),
         (["run", "discs", "--frames", f"{'9' * 30}:"], "more frames than can be counted"),
         (["check", "."], "'.' is a folder; name a file in it"),
@@ -27,6 +38,13 @@ def test_a_slip_is_answered_with_what_to_do(args: list[str], message: str) -> No
     got = call(*args)
     assert got.exit_code == 2
     assert message in got.stdout + got.stderr
+
+
+def test_a_pipelines_file_may_be_meant_by_a_name_and_the_other_way_round() -> None:
+    Path("mine.yaml").write_text("")
+    assert "did you mean the file 'mine.yaml'?" in call("run", "mine").stderr
+    Path("discs.yaml").rename("mine.yaml")
+    assert "there is a pipeline named 'discs'" in call("run", "discs.yaml").stderr
 
 
 def test_a_condition_that_fails_is_told_by_its_words_not_by_a_place_in_no_file() -> None:

@@ -173,6 +173,20 @@ def test_a_pipeline_is_made_of_files_too(folder: Path, name: str, told: str) -> 
         check_targets([("-o", name)], [load("outer.yaml")])
 
 
+def test_a_folder_that_is_read_gets_no_file_that_would_be_one_of_its_frames(folder: Path) -> None:
+    @click.command()
+    @click.argument("recordings", nargs=-1)
+    @click.option("-o", "output")
+    def written(recordings, output):
+        check_targets([("-o", output)])
+
+    (folder / "errors" / "f1.csv").write_text("1,2")
+    with pytest.raises(
+        UsageError, match=r"^-o errors/f2\.CSV: would be a part of what the command"
+    ):
+        CliRunner().invoke(written, ["errors", "-o", "errors/f2.CSV"], catch_exceptions=False)
+
+
 def test_what_may_be_named_is_let_through(folder: Path) -> None:
     @click.command()
     @click.argument("recordings", nargs=-1)
@@ -188,7 +202,7 @@ def test_what_may_be_named_is_let_through(folder: Path) -> None:
         ["film.npz", "-o", "-", "--json", "-"],
         ["/dev/null", "-o", "/dev/null", "--json", "/dev/null"],
         ["store.zarr", "-o", "new.zarr"],
-        ["errors", "-o", "errors/new.csv"],
+        ["errors", "-o", "errors/new.jsonl"],
         ["errors=old.csv=1", "-o", "new.csv"],
         ["no-such.csv", "-o", "no-such.csv"],
         [],

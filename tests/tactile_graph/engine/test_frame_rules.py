@@ -51,13 +51,23 @@ def pitched(image: Annotated[Image, Grid(pitch_cm=1.3)]) -> int:
     return 1
 
 
+def nearly_square(image: Annotated[Image, Grid(square_to=0.03)]) -> int:
+    return 1
+
+
+def exactly_square(image: Annotated[Image, Grid(square_to=0.0)]) -> int:
+    return 1
+
+
 def simulated() -> Iterator[Annotated[Frame, Quantity("volt")]]:
     yield Frame.of(np.ones((16, 16)), quantity="volt")
 
 
 REGISTRY = {
-    f.__name__: f for f in (volts, level, finer, sixteen, thirty_two, three, pitched, simulated)
-}
+    f.__name__: f
+    for f in (volts, level, finer, sixteen, thirty_two, three, pitched, nearly_square,
+              exactly_square, simulated)
+}  # fmt: skip
 
 
 def one(nodes: str, rest: str = "", pipelines: dict[str, Path] | None = None) -> Pipeline:
@@ -109,8 +119,18 @@ def frame(shape: tuple[int, int] = (16, 16), pitch: float = 1.3, quantity: str =
             frame(pitch=1.2),
             r"step 'pitched' takes a pitch of 1.3 cm, got a frame of \(1.2, 1.2\) cm",
         ),
+        (
+            "x: {step: nearly_square, in: frame}",
+            Frame.of(np.ones((3, 4)), (1.0, 2.0)),
+            "'nearly_square' takes cells that are square to 3%, got a frame with a pitch of 1 by 2",
+        ),
+        (
+            "x: {step: exactly_square, in: frame}",
+            Frame.of(np.ones((3, 4)), (1.02, 1.0)),
+            "step 'exactly_square' takes square cells, got a frame with a pitch of 1.02 by 1 cm",
+        ),
     ],
-    ids=range(7),
+    ids=range(9),
 )
 def test_the_first_frame_that_breaks_a_rule_is_refused(
     nodes: str, frame: Frame, message: str
@@ -124,6 +144,7 @@ def test_a_frame_that_keeps_the_rules_runs() -> None:
     nodes = "m: {step: level, in: frame, with: {level_v: 0.5}}\nf: {step: finer, in: m}"
     assert one(f"{nodes}\nx: {{step: thirty_two, in: f}}").run(frame())["x"] == 32
     assert one("x: {step: level, in: frame}").run(frame(quantity="counts")).ok
+    assert one("x: {step: nearly_square, in: frame}").run(Frame.of(np.ones((3, 4)), (1.02, 1.0))).ok
 
 
 def test_a_setting_that_is_not_given_demands_nothing() -> None:

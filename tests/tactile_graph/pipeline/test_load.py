@@ -518,7 +518,7 @@ def test_the_text_of_an_error_shows_place_words_and_line(reg: Any) -> None:
 @pytest.mark.parametrize(
     ("setting", "message"),
     [
-        ("level_v", "setting 'level_v': it is named node.setting"),
+        ("level_v", "setting 'level_v': it is named node.setting; did you mean m.level_v"),
         ("mm.level_v", "setting mm.level_v: no node named 'mm'; did you mean 'm'"),
         ("m.levl_v", "setting m.levl_v: unknown setting 'levl_v'; did you mean 'level_v'"),
         ("m.level_v", "setting m.level_v: must be > 0.0, got -1"),

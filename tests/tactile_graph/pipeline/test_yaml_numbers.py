@@ -51,3 +51,8 @@ def test_what_is_written_is_read_as_the_same_by_both(value: Any) -> None:
         "v": value
     }
     assert yaml.safe_load(written) == value
+
+
+@pytest.mark.parametrize("word", ["y", "N", "1e3", "0o17", "-.5e-3"])
+def test_texts_that_other_readers_of_yaml_take_for_more_stand_in_quotes(word: str) -> None:
+    assert in_yaml([word], default_flow_style=True) == f"['{word}']\n"

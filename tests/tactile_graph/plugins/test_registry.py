@@ -80,7 +80,7 @@ def test_what_is_missing_is_told_with_the_plugins_that_are_down() -> None:
     with pytest.raises(
         UsageError,
         match=r"no step named 'stp'; did you mean 'step'\? \(plugins failed to "
-        r"load: bad\)",
+        r"load: bad; 'tactile-graph plugins' says why\)",
     ):
         found.step("stp")
     with pytest.raises(UsageError, match="no pipeline named 'zzz'; there are: p"):

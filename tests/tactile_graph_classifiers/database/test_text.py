@@ -34,6 +34,19 @@ def test_export_and_import_keep_every_digit(tmp_path):
     assert to_text(again) == to_text(known)
 
 
+@pytest.mark.parametrize("word", ["no", "y", "~", "1e3", "0o17", "1:30", "2026-01-01"])
+def test_words_that_readers_of_yaml_take_for_others_are_in_quotes(tmp_path, word):
+    database = ObjectDatabase(tmp_path / "a.sqlite")
+    rows = np.array([[1.0, 1e-9, 1e20]])[:, : len(SETTING.features)]
+    database.learn(SETTING, [Lesson(word, "disc", rows, [word])])
+    text = to_text(database.known())
+    assert f"name: '{word}'\n" in text
+    assert f"['{word}']\n" in text
+    (lesson,) = from_text(text, "text")[1]
+    assert (lesson.name, list(lesson.sources)) == (word, [word])
+    np.testing.assert_array_equal(lesson.readings, rows)
+
+
 def test_a_classifier_reads_database_export_and_data_alike(tmp_path):
     database = filled(tmp_path / "a.sqlite")
     export = tmp_path / "a.yaml"

@@ -42,4 +42,5 @@ def test_the_mean_starts_anew_after_a_long_gap_or_with_other_features():
     mean(reading(1.0, 1.0), gap_s=None)
     assert mean(reading(3.0, 1.0), gap_s=9.0).values[0] == 2.0
     assert mean(reading(8.0, 1.0), gap_s=11.0).values[0] == 8.0
+    assert mean(reading(5.0, 1.0), gap_s=-2.0).values[0] == 5.0  # the clock goes back
     assert mean(Measurements(("weight",), np.array([4.0])), gap_s=1.0).values.tolist() == [4.0]

@@ -153,3 +153,13 @@ def test_of_cells_that_touch_at_corners_alone_each_is_a_contact(shape):
     sums = label.loops(on.astype(float), on, False, labels)
     assert labels.max() == len(sums) == np.count_nonzero(on)
     assert (labels > 0).tolist() == on.tolist()
+
+
+@pytest.mark.parametrize("rest", [0.0, 500.0, -300.0])
+def test_loads_that_count_what_cells_read_at_rest_are_told_of(rest):
+    readings = np.random.default_rng(0).normal(rest, 1.0, (10, 16))
+    empty = drawn("\n".join(["." * 16] * 10))
+    for mask, load in ((empty, 0.0), (image_of(readings).mask(np.eye(10, 16) > 0), 80.0)):
+        image = image_of(readings + np.where(mask.values, load, 0.0))
+        told = contacts.notice(image, mask)
+        assert ("'tare' takes that off" in told) == (rest != 0.0)

@@ -72,6 +72,8 @@ def test_a_pad_without_a_correction_or_another_image_is_refused(pad: str, tmp_pa
     step = CorrectPlace(pad=pad)
     with pytest.raises(RuleError, match="of raw on 12 x 16 elements, got raw on 4 x 4"):
         step(Image(np.zeros((4, 4)), (1.0, 1.0), (0.0, 0.0), "raw"), ())
+    with pytest.raises(RuleError, match=r"at a pitch of 0.5 x 0.8 cm, got 0.8 x 0.5 cm"):
+        step(Image(np.zeros(SHAPE), (0.8, 0.5), (0.0, 0.0), "raw"), ())
 
 
 def test_what_takes_contacts_takes_placed_ones_and_guards_know_their_deviation(pad: str) -> None:

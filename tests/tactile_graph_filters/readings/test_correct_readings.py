@@ -82,6 +82,10 @@ def test_other_shapes_quantities_and_numbers_are_refused(pad: str) -> None:
         step(image(np.zeros((3, 3))))
     with pytest.raises(RuleError, match="was learned from volt, got counts"):
         step(image(np.zeros(SHAPE), "counts"))
+    path = Path(pad)
+    path.write_text(path.read_text().replace("pitch_cm: [1, 1]", "pitch_cm: [0.5, 1]"))
+    with pytest.raises(RuleError, match=r"at a pitch of 0.5 x 1 cm, got 0.6 x 1 cm"):
+        CorrectReadings(pad=pad)(Image(np.zeros(SHAPE), (0.6, 1.0), (0.0, 0.0), "volt"))
     values = np.zeros(SHAPE)
     values[2, 3] = np.nan
     with pytest.raises(DataError, match="row 2, column 3"):

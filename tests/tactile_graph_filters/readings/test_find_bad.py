@@ -118,3 +118,21 @@ def test_an_element_is_good_where_its_mean_and_its_noise_are_near_the_others(see
         wanted = good & (noise > 0.0) if dead else good
         assert np.array_equal(np.ones((4, 5), bool) if found.valid is None else found.valid, wanted)
         assert np.array_equal(found.values, np.where(wanted, frames[-1], 0.0))
+
+
+@pytest.mark.parametrize("share", [0.3, 0.7, 0.97, 1.0])
+def test_elements_are_judged_by_those_that_are_there_and_by_their_valid_readings(share):
+    rng = np.random.default_rng(0)
+    missing = rng.random((20, 10)) < share
+    missing.flat[:3] = share == 1.0
+    finder = FindBad()
+    for k in range(31):
+        values = 100.0 + rng.normal(0.0, 1.0, (20, 10))
+        values[0, 2] = 400.0  # hot, and without noise
+        valid = ~missing
+        valid[0, 1] &= k != 3  # a single one that drops out
+        valid[0, 0] &= k < 5  # and one that was there for too short a time to tell
+        found = finder(image_of(np.where(valid, values, 0.0), "counts", valid))
+    expected = ~missing
+    expected[0, 0] = expected[0, 2] = False
+    assert np.array_equal(found.valid, expected)

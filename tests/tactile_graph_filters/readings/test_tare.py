@@ -1,5 +1,5 @@
-import inspect
 import math
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -42,10 +42,10 @@ def test_without_drift_the_baseline_stays():
 
 
 def test_untouched_cells_drift_to_zero_by_the_true_time():
-    tare = settled(drift_s=10.0)
+    tare = settled(drift_s=10.0, touched=25.0)
     found = tare(image_of(EMPTY + 5.0, "counts"), gap=10.0)
     assert found.values == pytest.approx(np.full((3, 3), 5.0 * math.exp(-1.0)))
-    tare = settled(drift_s=10.0, frame_s=5.0)
+    tare = settled(drift_s=10.0, frame_s=5.0, touched=25.0)
     for _ in range(2):  # without a clock two frames of 5 s are 10 s
         found = tare(image_of(EMPTY + 5.0, "counts"), gap=None)
     assert found.values == pytest.approx(np.full((3, 3), 5.0 * math.exp(-1.0)))
@@ -90,6 +90,43 @@ def test_nan_is_refused():
         Tare()(image_of([[math.nan]]))
 
 
-def test_a_reading_of_25_or_less_lets_the_zero_drift_on():
-    """The default that tells a touch; what is above it stops the drift."""
-    assert inspect.signature(Tare).parameters["touched"].default == 25.0
+def test_a_missing_reading_is_none_of_the_baseline_and_lets_nothing_drift():
+    rng = np.random.default_rng(0)
+    tare = Tare(n_frames=30, drift_s=2.0, touched=25.0)
+    for k in range(200):
+        valid = np.ones((6, 6), bool)
+        valid[1, 1] = k >= 16  # a loose connector for most of the first frames
+        valid[2, 4] = False
+        valid[3, 3] = not 40 <= k < 60
+        valid[5, 5] = k >= 30  # nobody knows what it reads empty
+        values = np.where(valid, 100.0 + rng.normal(0.0, 0.5, (6, 6)), 0.0)
+        with suppress(Skip):
+            found = tare(image_of(values, "counts", valid), gap=0.05)
+            valid[5, 5] = False
+            assert (found.valid == valid).all()
+            assert np.abs(found.values).max() < 4.0
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_what_tells_a_touch_is_the_empty_pads_own_noise_in_any_unit(unit):
+    rng = np.random.default_rng(0)
+    tare, load = Tare(drift_s=1.0), np.zeros((8, 8))
+    load[2:4, 2:4] = 20.0
+    for k in range(400):
+        drift = 0.01 * k
+        values = 100.0 + drift + (load if k >= 100 else 0.0) + rng.normal(0.0, 0.5, (8, 8))
+        with suppress(Skip):
+            found = tare(image_of(unit * values, "counts"), gap=0.05)
+    assert (found.values[2:4, 2:4] > 17.0 * unit).all()  # and has drifted with the pad
+    assert np.abs(found.values[6:]).max() < 3.0 * unit
+
+
+@pytest.mark.parametrize(("empty", "level"), [(0.0, 0.0), (EMPTY, 2.0)])
+def test_a_pad_without_noise_is_touched_from_two_steps_of_its_readings_on(empty, level):
+    tare = Tare(n_frames=3, drift_s=1e-3)
+    for k in range(9):
+        load = 0.0 if k < 3 else np.where(np.eye(3) > 0, level + 1e-9, 0.0)
+        with suppress(Skip):
+            found = tare(image_of(empty + load + np.zeros((3, 3)), "counts"), gap=1.0)
+    assert found.values.tolist() == pytest.approx((level + 1e-9) * np.eye(3))
+    assert tare._touched == pytest.approx(level, abs=1e-300)

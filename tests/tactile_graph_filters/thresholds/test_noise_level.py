@@ -43,3 +43,19 @@ def test_loads_on_a_pad_that_truly_reads_nothing_are_reached():
     values = np.zeros((16, 16))
     values[4:9, 5:11] = np.random.default_rng(3).integers(2, 9, (5, 6))
     assert noise_level(image_of(values)) == pytest.approx(0.03 * values.max())
+
+
+@pytest.mark.parametrize("shape", [(1, 5), (2, 4), (3, 3), (1, 16), (4, 6), (6, 6), (6, 8), (8, 8)])
+def test_an_empty_pad_of_few_cells_is_as_seldom_reached_as_one_of_more(shape):
+    rng = np.random.default_rng(4)
+    n = 1000
+    frames = rng.normal(100.0, 1.0, (n, *shape))
+    reached = sum(noise_level(image_of(frame)) <= frame.max() for frame in frames)
+    assert reached <= (0.016 if 5 <= math.prod(shape) <= 8 else 0.004) * n
+
+
+def test_from_8_by_8_cells_on_and_without_noise_the_level_is_the_plain_one():
+    values = np.random.default_rng(5).normal(size=(8, 8))
+    low, base, _ = lower_readings(image_of(values))
+    assert noise_level(image_of(values)) == base + 10.0 * ((base - low) / 0.9704)
+    assert noise_level(image_of([[0.0, 0.0, 0.0], [0.0, 5.0, 0.0]])) == pytest.approx(0.15)

@@ -44,6 +44,18 @@ def test_the_level_is_that_of_a_frame_with_the_recordings_noise_and_peak(
     assert found.told.endswith("r.npy, 40 frames")
 
 
+@pytest.mark.parametrize("side", [4, 6, 8])
+def test_noise_that_is_cut_off_is_told_by_several_frames_of_a_small_pad(
+    side: int, tmp_path: Path
+) -> None:
+    values = np.maximum(np.rint(np.random.default_rng(side).normal(0.0, 3.0, (80, side, side))), 0)
+    values[40:, 1:3, 1:3] += 200.0
+    np.save(tmp_path / "r.npy", values)
+    assert recording_level(tmp_path / "r.npy").level == pytest.approx(30.0, rel=0.15)
+    np.save(tmp_path / "r.npy", np.where(values > 100.0, values, 0.0))  # without noise: of the peak
+    assert recording_level(tmp_path / "r.npy").level == pytest.approx(0.03 * values.max())
+
+
 @pytest.mark.slow
 def test_every_frame_is_parted_by_the_same_level(frames: np.ndarray, recording: Path) -> None:
     """Frame by frame an empty pad has a lower level than a loaded one, and a level of its own."""

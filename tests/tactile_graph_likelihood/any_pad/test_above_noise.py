@@ -8,6 +8,8 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Image
 from tactile_graph_filters.readings.ordered import in_order
 from tactile_graph_likelihood.any_pad.above_noise import EVERY, SHOWS, AboveNoise, risen, rising
+from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.single.element_terms import UNKNOWN
 from tactile_graph_pads.pad import load_pad
 
 PAD = load_pad("thesis")
@@ -108,3 +110,13 @@ def test_what_saturates_on_a_quarter_of_the_pad_shows():
     values[3:12, 4:13] = 255.0
     found = AboveNoise()(Image(values, (1.0, 1.0), (0.0, 0.0), "counts"))
     assert np.array_equal(found.mask.values, values == 255.0)
+
+
+def test_a_quarter_of_the_pad_dead_below_the_others_is_not_its_zero():
+    rng = np.random.default_rng(5)
+    values = np.rint(rng.normal(20.0, 1.5, (16, 16)))
+    values[8:12, 8:12] += 200.0
+    values[:8, :8] = 0.0
+    found = AboveNoise()(image_of(values))
+    assert (found.mask.values == (values > 100.0)).all()
+    assert (observed(image_of(values), load_pad("thesis")).states[:8, :8] == UNKNOWN).all()

@@ -71,6 +71,10 @@ def centre_off(step, frames):
     return np.mean(off)
 
 
+def radius_of(found):
+    return getattr(found, "shape", found).radius_cm
+
+
 def test_of_an_image_like_those_recorded_all_is_known(pad, bench):
     image = next(bench.frames(1)).image
     its = taught(load_pad(pad), image)
@@ -97,6 +101,15 @@ def test_images_of_another_shape_or_quantity_are_refused(pad):
         with pytest.raises(RuleError, match="learned from readings in volt, got raw"):
             step(raw)
     assert taught(load_pad("thesis"), raw) is None
+
+
+def test_an_image_that_states_another_pitch_is_refused_and_one_that_states_none_is_not(pad):
+    known = load_pad(pad)
+    finer = Image(np.zeros((16, 16)), (0.5, 0.5), (0.0, 0.0), "volt")
+    with pytest.raises(RuleError, match=r"learned at a pitch of 1.3 x 1.3 cm, got 0.5 x 0.5 cm"):
+        taught(known, finer)
+    assert taught(known, Image(np.zeros((16, 16)), (1.3001, 1.3), (0.0, 0.0), "volt")) is not None
+    assert taught(known, Image(np.zeros((16, 16)), quantity="volt")) is not None
 
 
 def test_a_pad_with_a_learned_curve_knows_its_grams(tmp_path, bench):
@@ -186,6 +199,33 @@ def test_learned_gains_leave_less_unevenness(tmp_path, bench):
     left = math.sqrt(0.25 - np.var(logs[~bench.stuck]))
     assert unevenness_left(evened, 0.5) == pytest.approx(left)
     assert unevenness_left(evened, 0.3) == pytest.approx(0.09)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("warm_kernels")
+@pytest.mark.parametrize("step", [LocateDisc, Locate])
+def test_gains_that_do_not_hold_under_foam_are_left_out_and_others_are_not(tmp_path, step):
+    bench = Bench(replace(BASE, fixed=1.0), np.random.default_rng(3))
+    path = Path(written(tmp_path, bench, gain_of="gram"))
+    gain = np.exp(bench.kind.sigma * bench.own)
+    state = np.full(gain.shape, "good")
+    write_elements(
+        tmp_path / "elements.csv", Elements(bench.zero_v, np.full(gain.shape, 2e-4), gain, state)
+    )
+    data = yaml.safe_load(path.read_text())
+    data["unevenness"] = {"sigma": bench.kind.sigma, "voids": bench.kind.voids}
+    path.write_text(yaml.safe_dump(data))
+    named = {"shapes": ["disc"]} if step is Locate else {}
+    told, untold = step(settings=replace(ANY_PAD, pad=str(path)), **named), step(**named)
+    hard = list(bench.frames(12))
+    assert centre_off(told, hard) < 0.6 * centre_off(untold, hard)
+    bench.kind = replace(bench.kind, foam_cells=0.6)
+    soft = list(bench.frames(12))
+    sizes = [
+        np.mean([abs(radius_of(one(f.image)) - f.truth[0].shape.radius_cm) for f in soft])
+        for one in (told, untold)
+    ]
+    assert sizes[0] < 1.5 * sizes[1]
 
 
 @pytest.mark.slow

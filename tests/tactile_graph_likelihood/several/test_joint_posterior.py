@@ -95,6 +95,17 @@ def test_the_compiled_kernel_gives_the_same():
     assert both(POINTS, logs, states) == pytest.approx(got, abs=1e-8)
 
 
+def test_slopes_give_the_gain_beside_others_and_where_outlines_overlap():
+    logs, states = image(6)
+    moved = POINTS.copy()
+    moved[0, :2] = POINTS[1, :2] + 0.3
+    there = beside(0, outlines=table(moved))
+    first = problem_of_joint(logs, states, there.load, there.share)
+    out = Information(np.empty(6), np.empty((6, 6)))
+    got = slopes.call(first, table(moved, 1), out)
+    assert got == pytest.approx(gain.call(first, table(moved, 1)), abs=1e-8)
+
+
 def test_overlap_costs_and_touching_does_not():
     share = np.ones((3, 3))
     assert overlap.call(share) == 0.0
@@ -109,8 +120,9 @@ def test_overlap_costs_and_touching_does_not():
 def test_slopes_are_those_of_the_gain():
     logs, states = image(5)
     out = Information(np.empty(12), np.empty((12, 12)))
-    slopes.call(problem_of_joint(logs, states), table(POINTS), out)
+    got = slopes.call(problem_of_joint(logs, states), table(POINTS), out)
     slope, matrix = out
+    assert got == pytest.approx(both(POINTS, logs, states), abs=1e-9)
     assert matrix == pytest.approx(matrix.T)
     assert np.linalg.eigvalsh(matrix).min() > -1e-6
     for k, at in ((0, 3), (1, 5)):  # the loads: smooth
@@ -131,8 +143,11 @@ def test_maximising_gains_and_comes_near_the_truth(by):
         points = POINTS + np.array([0.4, -0.3, 0.0, 0.0, 0.0, 0.0])
         problem, outlines = problem_of_joint(logs, states), table(points)
         before = both(points, logs, states) + log_rest_of.call(problem, outlines)
-        top = by(maximise_jointly)(problem, outlines, 25, 0.1)
-        points = outlines.points
+        out = Information(np.empty(12), np.empty((12, 12)))
+        top = by(maximise_jointly)(problem, outlines, 25, 0.1, out)
+        points, there = outlines.points, Information(np.empty(12), np.empty((12, 12)))
+        slopes.call(problem, outlines, there)
+        assert out.matrix == pytest.approx(there.matrix)
         assert top > before
         assert top == pytest.approx(
             both(points, logs, states) + log_rest_of.call(problem, outlines)

@@ -23,6 +23,17 @@ def test_the_baseline_is_the_median_of_each_cell() -> None:
     assert baseline.tolist() == [[1.0, 2.0]]
 
 
+def test_missing_cells_are_none_of_the_baseline() -> None:
+    taring = Taring()
+    for i in range(tare.N_FRAMES):
+        baseline = taring.add(frame(1.0, [[i > 20, False]]))
+    assert baseline is not None
+    got = less(frame(3.0), baseline).image
+    assert got.values.tolist() == [[2.0, 0.0]]
+    assert got.valid is not None
+    assert got.valid.tolist() == [[True, False]]
+
+
 def test_a_slow_pad_is_tared_by_what_came_in_a_second() -> None:
     taring = Taring()
     taring._since -= 2 * tare.LONGEST_S

@@ -320,6 +320,19 @@ def test_a_bench_that_dies_is_started_anew(command: Command) -> None:
         page.until("frame")
 
 
+def test_a_pause_outlives_the_bench(command: Command) -> None:
+    with Page(command) as page:
+        page.until("frame")
+        page.ask("pause")
+        page.until("pulse", paused=True)
+        os.kill(command.bench(), signal.SIGKILL)
+        page.told("started anew")
+        page.until("pulse", state="waiting", kept_frames=0)
+        for index in range(2):
+            page.ask("step")
+            page.until("frame", index=index)
+
+
 def test_a_recording_and_a_tare_outlive_the_bench(folder: Path) -> None:
     pytest.importorskip("zarr", reason="the extra `zarr` is not there")
     endless = ("--source", "simulate", "--with", "frames=100000", "--rate", "40")

@@ -189,3 +189,18 @@ def test_a_frame_that_is_not_kept_any_more_shows_nothing(room: Room) -> None:
     room.gaze.scrub(70.0)
     room.found(wire.Kept(room.fetched().ticket, (), 0.0, False, None))
     assert room.seen == [9]
+
+
+def test_what_a_dead_bench_kept_is_not_asked_of_the_next(room: Room) -> None:
+    """The next one numbers its frames anew, and would never have one behind the 900th."""
+    room.came(900)
+    room.gaze.pause()
+    room.gaze.bench_died()
+    assert room.gaze.held == (wire.Hold(True) in room.told)
+    room.gaze.again()
+    room.gaze.step()
+    assert not any(isinstance(t, wire.Fetch) for t in room.told)
+    room.came(0)
+    assert room.seen == [900, 0]
+    room.gaze.step()
+    assert room.fetched().after == 0

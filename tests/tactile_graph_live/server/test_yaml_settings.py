@@ -220,3 +220,20 @@ def test_what_came_out_as_another_pipeline_is_refused(
     told = "footprint.level_v: cannot be written into the file's YAML as it is spelled"
     with pytest.raises(UsageError, match=re.escape(told)):
         text_with(FLOW, {"footprint": {"level_v": 0.03}})
+
+
+def test_a_file_is_taken_apart_once_while_a_setting_is_moved(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    taken_apart: list[str] = []
+
+    class Counting(yaml_settings._Loader):
+        def __init__(self, text: str) -> None:
+            super().__init__(text)
+            taken_apart.append(text)
+
+    monkeypatch.setattr(yaml_settings, "_Loader", Counting)
+    text = f"{FLOW}# moved\n"
+    for level_v in (0.02, 0.03, 0.04):
+        text_with(text, {"footprint": {"level_v": level_v}})
+    assert taken_apart == [text]

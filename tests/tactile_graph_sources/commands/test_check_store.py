@@ -47,6 +47,14 @@ def test_damage_is_named_and_mended(store: Path) -> None:
     assert "  mended  time_s/zarr.json is damaged\n" in got.stdout
 
 
+def test_what_a_full_disc_left_is_told_of_a_store_that_is_right(store: Path) -> None:
+    (store / "values" / "c" / "0" / "0" / "0.abc.partial").write_bytes(b"half")
+    got = check(store)
+    assert got.exit_code == 0
+    assert f"{store}: right  8 frames" in got.stdout
+    assert "  left    1 file that a writer left unfinished\n  a writer was cut short" in got.stdout
+
+
 def test_what_cannot_be_mended_stays_wrong(store: Path) -> None:
     (store / "values" / "c" / "1" / "0" / "0").unlink()
     got = check(store, "--repair")

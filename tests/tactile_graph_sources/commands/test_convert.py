@@ -15,6 +15,7 @@ from tactile_graph.wires import Circle, TrueObject
 from tactile_graph_sources.commands.convert import convert
 from tactile_graph_sources.recording import recording
 from tactile_graph_sources.writers.write_npz import write_npz
+from tactile_graph_sources.writers.write_store import StoreWriter
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
 
@@ -67,9 +68,31 @@ def test_a_table_and_back_with_what_it_cannot_say_told(tmp_path: Path, made: lis
         assert a.image.pitch_cm == b.image.pitch_cm
 
 
+def test_a_store_that_a_full_disc_cuts_short_is_none(
+    tmp_path: Path, made: list[Frame], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Or half a recording would pass for all of it, and its name be taken."""
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(StoreWriter, "_write", full)
+    args = [str(tmp_path / name) for name in ("a.npz", "b.zarr")]
+    result = CliRunner().invoke(cli, ["convert", *args])
+    assert "b.zarr: cannot be written: No space left on device" in result.stderr
+    assert not (tmp_path / "b.zarr").exists()
+
+
 @pytest.mark.parametrize(
     ("target", "message"),
-    [("b.xyz", "TARGET must end in .zarr, .npz, .csv"), ("a.npz", "is there already")],
+    [
+        ("b.xyz", "TARGET must end in .zarr, .npz, .csv"),
+        ("b", "got 'b'\n"),
+        (".csv", "must end"),
+        ("b.cvs", "got 'b.cvs'; did you mean '.csv'?"),
+        ("b.csv.gz", "TARGET must end in .zarr"),
+        ("a.npz", "is there already"),
+    ],
 )
 def test_a_target_that_will_not_do_is_refused(
     tmp_path: Path, made: list[Frame], target: str, message: str
@@ -77,6 +100,21 @@ def test_a_target_that_will_not_do_is_refused(
     result = CliRunner().invoke(convert, [str(tmp_path / "a.npz"), str(tmp_path / target)])
     assert result.exit_code == 2
     assert message in result.output
+
+
+def test_an_ending_may_be_in_capitals(tmp_path: Path, made: list[Frame]) -> None:
+    assert "B.CSV: 6 frames" in run(tmp_path / "a.npz", tmp_path / "B.CSV")
+
+
+def test_a_target_within_the_folder_that_is_the_recording_is_refused(tmp_path: Path) -> None:
+    """Or it would be a part of the recording from then on."""
+    (tmp_path / "parts").mkdir()
+    for i in range(2):
+        (tmp_path / "parts" / f"f{i}.csv").write_text("1,2,3\n4,5,6\n")
+    args = [str(tmp_path / "parts"), str(tmp_path / "parts" / "f2.csv")]
+    result = CliRunner().invoke(cli, ["convert", *args])
+    assert result.exit_code == 2
+    assert "f2.csv: would be a part of what the command reads" in result.stderr
 
 
 def test_a_source_that_is_no_recording_is_an_error(tmp_path: Path) -> None:

@@ -110,6 +110,15 @@ def test_people_read_the_same_and_see_the_fullest_frame(mat: Path) -> None:
 
 
 @pytest.mark.slow  # much is compiled
+def test_where_cells_rest_at_much_tare_is_named(tmp_path: Path, nothing_tried: None) -> None:
+    values = RNG.normal(0.0, 1.0, (20, 6, 8))
+    values[10:, 2:4, 3:5] += 80.0
+    for name, rest in (("zero.npy", 0.0), ("high.npy", 500.0)):
+        np.save(tmp_path / name, values + rest)
+        told = "first step is tare" in run(tmp_path / name)
+        assert told == (rest > 0.0)
+
+
 def test_the_commands_it_gives_work_as_they_stand(tmp_path: Path) -> None:
     path = tmp_path / "my mat.csv"
     path.write_text(flat(film(12, 6, 10)))
@@ -227,6 +236,23 @@ def test_nothing_is_dead_or_stuck_on_a_vendors_insoles() -> None:
     for sensor in looked(shared("vendor_exports/xsensor_data.csv"))["sensors"]:
         assert (sensor["dead"], sensor["stuck"]) == ([], [])
         assert sensor["quantity"] == "kilopascal"
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("nothing_tried")
+@pytest.mark.parametrize("n", [64, 110])
+def test_cells_dead_far_below_how_the_others_rest_hide_neither_noise_nor_offset(
+    n: int, tmp_path: Path
+) -> None:
+    rng = np.random.default_rng(n)
+    dead = (rng.permutation(256) < n).reshape(16, 16)
+    films = np.rint(rng.normal(20.0, 1.5, (40, 16, 16)))
+    films[np.arange(40), 5 + np.arange(40) % 6, 8] += 200.0
+    np.save(tmp_path / "a.npy", np.where(dead, 0.0, films))
+    (sensor,) = looked(tmp_path / "a.npy")["sensors"]
+    assert sensor["dead"] == np.argwhere(dead).tolist()
+    assert (sensor["noise"], sensor["offset"]) == pytest.approx((1.5, 18.0), rel=0.25)
+    assert sensor["offset_spread"] < 3.0
 
 
 @pytest.mark.slow

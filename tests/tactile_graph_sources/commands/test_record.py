@@ -220,6 +220,7 @@ def test_a_full_disc_is_told_with_the_store_and_what_is_in_it(
     result = run(pad, tmp_path / "a.zarr", "--chunk", 8, "--frames", 10)
     assert result.exit_code == 2
     assert "a.zarr: 8 frames\n" in result.output
+    assert f"'record --append {tmp_path / 'a.zarr'}' goes on with it" in result.output
     assert "a.zarr: cannot be written: No space left on device" in result.output
     assert len(list(read_store(tmp_path / "a.zarr"))) == 8
 

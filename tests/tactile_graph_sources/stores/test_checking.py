@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import errno
 import json
+import os
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from tactile_graph.errors import DataError, UsageError
 from tactile_graph.steps import Report
 from tactile_graph.wires import TrueObject
 from tactile_graph_sources.store import read_store
+from tactile_graph_sources.stores import journal
 from tactile_graph_sources.stores.checking import check
 from tactile_graph_sources.stores.stored import UNSURE
 from tactile_graph_sources.writers.write_store import StoreWriter
@@ -43,8 +46,8 @@ def plain(path: Path) -> list[object]:
 
 
 def test_a_store_that_is_as_it_was_written_is_right(store: Path) -> None:
-    assert check(store) == (ABOUT, (), ())
-    assert check(store, repair=True) == (ABOUT, (), ())
+    assert check(store) == (ABOUT, (), (), ())
+    assert check(store, repair=True) == (ABOUT, (), (), ())
 
 
 @pytest.mark.slow  # many stores
@@ -53,8 +56,8 @@ def test_metadata_are_written_anew(store: Path, name: str) -> None:
     whole = plain(store)
     (store / name / "zarr.json").write_text("{")
     told = f"{name}/zarr.json is damaged".removeprefix("/")
-    assert check(store) == (ABOUT, (told,), ())
-    assert check(store, repair=True) == (ABOUT, (), (told,))
+    assert check(store) == (ABOUT, (told,), (), ())
+    assert check(store, repair=True) == (ABOUT, (), (told,), ())
     report = Report()
     assert len(list(read_store(store, report))) == 10
     assert report.troubles == []
@@ -107,7 +110,7 @@ def test_a_damaged_journal_is_written_anew_and_its_frames_stay_doubtful(store: P
     assert "line 2 of its journal is damaged" in checked.mended
     assert [p[:-1] for p in plain(store)] == [p[:-1] for p in whole]  # type: ignore[index]
     assert [f.index for f in read_store(store) if f.doubtful] == [0, 1, 2, 3]
-    assert check(store, repair=True) == (ABOUT, (), ())
+    assert check(store, repair=True) == (ABOUT, (), (), ())
 
 
 @pytest.mark.slow
@@ -118,7 +121,7 @@ def test_lost_frames_stay_told_as_lost(store: Path) -> None:
     told = "frames 8 to 9: lost: values/c/2/0/0 is gone"
     assert told in check(store).wrong
     assert check(store, repair=True).wrong == (UNSURE, told)
-    assert check(store, repair=True) == (ABOUT, (UNSURE, told), ())
+    assert check(store, repair=True) == (ABOUT, (UNSURE, told), (), ())
     report = Report()
     assert [f.index for f in read_store(store, report)] == list(range(8))
     assert report.troubles == [(str(store), UNSURE), (str(store), told)]
@@ -137,16 +140,37 @@ def test_what_a_killed_writer_left_is_swept_away(store: Path) -> None:
     (store / "values" / "c" / "0" / "0" / "0.abc.partial").write_bytes(b"half")
     group = zarr.open_group(str(store), mode="r+")
     group["values"].resize((14, 3, 2))
-    with (store / "frames.journal").open("ab") as journal:
-        journal.write(b"0123abcd {")
-    checked = check(store, repair=True)
-    assert checked.wrong == ()
-    assert set(checked.mended) == {
+    with (store / "frames.journal").open("ab") as lines:
+        lines.write(b"0123abcd {")
+    left = (
         "the last line of its journal was not finished",
         "values/zarr.json tells of 14 frames, there are 10",
         "1 file that a writer left unfinished",
-    }
+    )
+    assert check(store) == (ABOUT, (), (), left)
+    assert check(store, repair=True) == (ABOUT, (), left, ())
     assert len(plain(store)) == 10
+
+
+def test_a_line_of_which_a_full_disc_took_a_part_is_none_of_the_journal(
+    store: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Or the next one, once there is room, would be taken for its end."""
+    write, said = os.write, [9]
+
+    def some(file: int, data: bytes) -> int:
+        if not said:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write(file, data[: said.pop()])
+
+    with StoreWriter(store, append=True) as writer:
+        writer.write(Frame.of(np.ones((3, 2)), quantity="volt"))
+        with monkeypatch.context() as patched:
+            patched.setattr(journal, "os", SimpleNamespace(**{**vars(os), "write": some}))
+            with pytest.raises(UsageError, match="No space left"):
+                writer.flush()
+    assert check(store).wrong == ()
+    assert len(plain(store)) == 11
 
 
 @pytest.mark.slow

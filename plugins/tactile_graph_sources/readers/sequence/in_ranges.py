@@ -60,6 +60,8 @@ def ranges_of_recordings(path: Path | list[Path], **settings: Any) -> Ranges | N
         return None
     told = Told.of(**{name: value for name, value in settings.items() if name in TOLD})
     labels = labels_of(paths) if len(paths) > 1 else [""]
+    if len({*labels}) < len(labels):  # one is given twice: steps go on with the state of its label
+        return None
     found = [_opened(p, told, name) for p, name in zip(paths, labels, strict=True)]
     laid = [one for one in found if one is not None and one.n_frames > 0]
     if len(laid) < len(found):

@@ -1,4 +1,4 @@
-"""Times that leap ahead or go back, as joined, sorted or interrupted recordings have them: told."""
+"""Times that leap ahead, go back or stand still, as joined or interrupted recordings have: told."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def stacks_with_leaps_told(
 
 
 def _goes_on(clock: _Clock, stack: FrameStack) -> bool:
-    """Return whether no time of a stack can be a leap; if so, take its steps in."""
+    """Return whether no time of a stack can be a leap or repeat; if so, take its steps in."""
     if stack.time_s is None:
         return True
     times = stack.time_s.tolist()
@@ -59,7 +59,8 @@ def _goes_on(clock: _Clock, stack: FrameStack) -> bool:
     steps = [time_s - last_s for time_s, last_s in zip(times, lasts, strict=True)]
     every = [*clock.steps_s, *steps]
     least = min((step for step in every if step > 0.0), default=0.0)
-    if min(steps) < 0.0 or max(every) > LEAP * least:
+    known = steps[clock.last_s is None :]  # a first frame has none
+    if min(known, default=1.0) <= 0.0 or max(every) > LEAP * least:
         return False
     clock.last_s = times[-1]
     clock.steps_s.extend(steps)
@@ -69,10 +70,11 @@ def _goes_on(clock: _Clock, stack: FrameStack) -> bool:
 def with_leaps_told(
     frames: Iterator[Frame], report: Report, where: str, begun: _Clock | None = None
 ) -> Iterator[Frame]:
-    """Yield the frames; leaps in time are counted.
+    """Yield the frames; leaps in time and times that repeat are counted.
 
     A frame whose time goes back is told, and marked as following a gap: recordings were joined or
     sorted. Time that leaps ahead is what devices that pause give, and no frame need be missing.
+    Where frames share a time, as by a clock coarser than they come, speeds are too high.
 
     Parameters
     ----------
@@ -99,6 +101,8 @@ def with_leaps_told(
             report.trouble(f"{where}: frame {frame.index}", told)
             yield replace(frame, gap=True)
             continue
+        if step_s == 0.0 and last_s is not None:
+            report.count("frames at the very time of the one before")
         if not frame.gap and is_leap(step_s, usual_step(clock.steps_s)):
             report.count("leaps in time of more than 20 usual steps")
         clock.steps_s.append(step_s)

@@ -173,6 +173,14 @@ def test_settings_of_others_stay_as_they_are(mine: Path) -> None:
     }
 
 
+@pytest.mark.slow
+def test_the_mark_that_some_editors_put_before_settings_stays(mine: Path) -> None:
+    path = settings('\ufeff{"editor.rulers": [100]}\n')
+    assert call("schema", "--install", "mine.yaml").exit_code == 0
+    assert path.read_bytes().startswith(b"\xef\xbb\xbf{")
+    assert json.loads(path.read_text(encoding="utf-8-sig"))["yaml.schemas"] == SCHEMAS
+
+
 @pytest.mark.parametrize(
     ("text", "why"),
     [

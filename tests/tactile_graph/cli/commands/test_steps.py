@@ -7,8 +7,10 @@ from typing import Annotated, Any
 
 import pytest
 from annotated_types import Ge, Len, MultipleOf
+from click.testing import CliRunner
 
 from helpers_cli import call, install
+from tactile_graph.cli import cli
 from tactile_graph.cli.pages.step_page import made_up_use, ranges
 from tactile_graph.steps.signature import read_signature
 
@@ -43,6 +45,23 @@ def test_the_list_shows_ports_output_and_first_sentence_without_importing_a_step
     )
     assert "tg_late_steps has no 'lost'" in rows["lost"]
     assert "tg_late_steps" not in sys.modules
+
+
+@pytest.mark.usefixtures("_late")
+@pytest.mark.parametrize("width", [40, 60])
+def test_on_a_narrow_screen_what_belongs_to_a_step_stands_under_its_name_whole(width: int):
+    got = CliRunner(env={"COLUMNS": str(width)}).invoke(cli, ["steps"]).stdout
+    assert "\n  late\n    Image → Mask\n    A mask, late\n" in got
+    assert all(len(line) <= width for line in got.splitlines())
+    assert "…" not in got
+
+
+@pytest.mark.usefixtures("hand_made")
+def test_on_a_narrow_screen_no_word_is_cut():
+    for args in (["steps", "pressed"], ["steps", "disc", "-s"], ["explain", "discs"]):
+        got = CliRunner(env={"COLUMNS": "40"}).invoke(cli, args)
+        assert got.exit_code == 0
+        assert "…" not in got.stdout
 
 
 @pytest.mark.usefixtures("hand_made")

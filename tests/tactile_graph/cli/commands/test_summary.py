@@ -73,6 +73,29 @@ def test_errors_are_by_their_size_and_angles_have_no_mean() -> None:
     assert told["circle.turned_rad"]["median"] == 0.2
 
 
+@pytest.mark.parametrize("n", [500, 20_000])
+@pytest.mark.parametrize("centre", [0.0, 86.0, 90.0])
+def test_angles_of_axes_are_told_from_where_fewest_lie(centre: float, n: int) -> None:
+    angles = centre + np.random.default_rng(0).uniform(-4.0, 4.0, n)
+    wrapped = (angles + 90.0) % 180.0 - 90.0
+    rows = [f"{i},ok,{a}" for i, a in enumerate(wrapped)]
+    Path("axes.csv").write_text("\n".join(["frame,r.outcome,r.angle_deg", *rows]))
+    told = of("axes.csv")["quantities"]["r.angle_deg"]
+    expected = [angles.min(), *np.quantile(angles, (0.05, 0.5, 0.95)), angles.max()]
+    got = [told[key] for key in ("least", "p5", "median", "p95", "most")]
+    assert got == pytest.approx(expected, abs=0.1)
+    assert told["mean"] is None
+
+
+def test_angles_all_around_have_no_order() -> None:
+    rows = [f"{i},ok,{a}" for i, a in enumerate(np.linspace(-89.0, 90.0, 180))]
+    Path("axes.csv").write_text("\n".join(["frame,r.outcome,r.angle_deg", *rows]))
+    told = of("axes.csv")["quantities"]["r.angle_deg"]
+    assert told["n"] == 180
+    assert {told[key] for key in ("mean", "least", "p5", "median", "p95", "most")} == {None}
+    assert call("summary", "axes.csv").exit_code == 0
+
+
 def test_rows_of_objects_are_told_by_their_output() -> None:
     told = of("long.csv")
     assert told["frames"] == 2

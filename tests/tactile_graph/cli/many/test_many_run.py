@@ -179,6 +179,14 @@ def test_endless_state_goes_by_recording_or_in_one_process_and_is_told(folder: P
     assert "state starts anew with each" in said
     counts = [float(row.split(b",")[-1]) for row in both.splitlines()[1:]]
     assert counts == [*range(1, 701), *range(1, 701)]
+    assert written(folder, "n3.csv", "endless.yaml", "a.zarr", "b.zarr")[0] == both
+
+
+@pytest.mark.slow
+def test_state_that_ends_reaches_back_to_no_recording_before(folder: Path) -> None:
+    words = ("lately.yaml", "b.zarr", "a.zarr")
+    one, _ = written(folder, "l1.csv", *words)
+    assert written(folder, "l2.csv", *words, "--workers", "2")[0] == one
 
 
 @pytest.mark.slow

@@ -62,6 +62,24 @@ def test_one_whose_ending_is_taken_is_had_by_its_plugins_name(exporters: Path) -
     assert "words.csv" in call("plugins").stdout
 
 
+@pytest.mark.parametrize("method", ["__init__", "write", "close"])
+def test_an_error_names_exporter_and_plugin_and_leaves_no_note_of_nothing(
+    exporters: Path, monkeypatch: pytest.MonkeyPatch, method: str
+) -> None:
+    def broken(*_: object) -> None:
+        raise KeyError("colour")
+
+    monkeypatch.setattr(import_module("tg_words").Words, method, broken)
+    got = call("run", "p.yaml", "-o", "q.md.gz")
+    assert got.exit_code == 2
+    what = "opened" if method == "__init__" else method
+    told = (
+        f"-o q.md.gz: exporter '.md.gz' of plugin 'words' (package in-words): its {what} breaks: K"
+    )
+    assert told in got.stderr
+    assert not Path("q.md.gz.meta.json").exists() or method == "write"
+
+
 def test_the_name_that_is_suggested_is_taken(exporters: Path) -> None:
     got = call("run", "p.yaml", "-o", "q.txt", "--format", "words.cvs")
     assert got.exit_code == 2
@@ -92,4 +110,4 @@ def test_that_a_plugin_is_down_is_said_where_its_ending_is_missing(
     (hand_made / "p.yaml").write_text(TEXT)
     got = call("run", "p.yaml", *args)
     assert got.exit_code == 2
-    assert "(plugins failed to load: words)" in got.stderr
+    assert "(plugins failed to load: words; " in got.stderr

@@ -175,6 +175,26 @@ def test_a_disc_that_is_full_leaves_nothing(name: str, monkeypatch: pytest.Monke
     assert [n for n in os.listdir() if n.endswith(("part", name))] == []
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="has no limit of a file's size")
+def test_hdf5_that_may_grow_no_more_is_told_and_leaves_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its library crashes as it closes a file of which a write failed."""
+    import resource
+
+    need("out.h5")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2048, before[1]))
+    try:
+        got = call("run", "kept.yaml", "--only", "frame", "-o", "out.h5")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert got.exit_code == 2
+    assert "error: out.h5: cannot be written: File too large; nothing of it is kept" in got.stderr
+    assert [n for n in os.listdir() if n.endswith(("part", "h5", "json"))] == []
+
+
 @pytest.mark.parametrize(("name", "library"), [("out.h5", "h5py"), ("out.zarr", "zarr")])
 def test_without_its_library_it_says_what_to_install(
     name: str, library: str, monkeypatch: pytest.MonkeyPatch

@@ -20,7 +20,7 @@ from tactile_graph.cli.output.one_run import opened_alone
 from tactile_graph.errors import UsageError
 
 OF = {"pipeline": "p"}
-REFUSED = "-o {}: another run is writing it"
+REFUSED = "-o {}: another run is writing it, or another program has locked it"
 
 
 @pytest.mark.usefixtures("hand_made")

@@ -12,6 +12,8 @@ import pytest
 
 from helpers_cli import call, install
 from tactile_graph import Circle, Degenerate, Image
+from tactile_graph.cli.output.tally import Tally
+from tactile_graph.compiled.preparing import preparing
 
 
 def nowhere(image: Image) -> Circle:
@@ -249,3 +251,15 @@ def test_a_record_that_cannot_be_written_is_told_by_its_output(
     got = call("run", "p.yaml", "r.txt", "--format", form)
     assert got.exit_code == 2
     assert f"error: {told}" in got.stderr
+
+
+def test_the_rate_of_frames_leaves_out_the_time_of_the_compiler(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    tally = Tally([], n=40)
+    tally.seconds = 12.0
+    monkeypatch.setattr(preparing, "_spent_s", preparing.spent_s + 0.5)
+    assert tally._last("").plain.startswith("40 frames in 12.00 s (3.333 a second): ")
+    monkeypatch.setattr(preparing, "_spent_s", preparing.spent_s + 9.5)
+    told = "40 frames in 12.00 s, 10.0 s of it compiling (20 a second): "
+    assert tally._last("").plain.startswith(told)

@@ -16,6 +16,7 @@ from tactile_graph import Degenerate, Frame, Image, loads
 from tactile_graph.engine.calls.sources import Numbering
 from tactile_graph.engine.outcomes.outcome import Failed
 from tactile_graph.errors import DataError, PipelineError, UsageError
+from tactile_graph.steps import TimeGap
 
 
 def scaled(image: Image, *, factor: int = 2, offset: int = 0) -> int:
@@ -83,6 +84,45 @@ def test_settings_reach_a_step_made_within_a_function() -> None:
 def test_each_node_of_a_class_has_its_own_instance() -> None:
     nodes = "a: {step: kept, in: frame}\nb: {step: kept, in: frame, with: {step: 10}}"
     assert values(nodes, 1, 2) == [{"a": 1, "b": 10}, {"a": 2, "b": 20}]
+
+
+class Gapped:
+    """A class with a state that is told of time."""
+
+    def __init__(self) -> None:
+        self.n = 0
+
+    def __call__(self, image: Image, *, gap_s: TimeGap = None) -> str:
+        self.n += 1
+        return f"{self.n} {gap_s}"
+
+
+def test_each_label_has_its_own_state_and_clock() -> None:
+    text = "pipeline: p\nnodes: {a: {step: gapped, in: frame}}\noutputs: [a]\n"
+    runner = loads(text, "p.yaml", registry({"gapped": Gapped})).runner()
+    rows = [("left", 0.0), ("right", 0.0), ("left", 0.5), ("right", 0.25), ("", 9.0)]
+    got = [runner(Frame.of(np.ones((2, 2)), time_s=t, label=name))["a"] for name, t in rows]
+    assert got == ["1 None", "1 None", "2 0.5", "2 0.25", "1 None"]
+    assert runner.n_states == 3
+
+
+def test_a_step_that_writes_has_one_instance_whatever_the_labels() -> None:
+    made: list[int] = []
+
+    class Writes:
+        def __init__(self) -> None:
+            made.append(1)
+
+        def __call__(self, image: Image) -> None:
+            return None
+
+    text = "pipeline: p\nnodes: {a: {step: writes, in: frame}}\noutputs: [a]\n"
+    pipeline = loads(text, "p.yaml", registry({"writes": Writes}))
+    made.clear()
+    runner = pipeline.runner()
+    for name in ("left", "right"):
+        runner(Frame.of(np.ones((2, 2)), label=name))
+    assert len(made) == 1
 
 
 def test_a_failure_of_a_step_with_settings_names_its_own_file_and_function() -> None:

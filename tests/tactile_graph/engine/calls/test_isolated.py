@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import types
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -125,6 +126,13 @@ def test_state_and_random_numbers_are_those_of_the_step_at_home() -> None:
     away = pipeline("step: counting, in: frame, with: {start: 3}, isolated: true").runner(seed=5)
     for i in range(3):
         assert away(frame(0, i))["risky"] == at_home(frame(0, i))["risky"]
+
+
+def test_each_label_has_its_state_in_the_nodes_one_process() -> None:
+    runner = pipeline("step: counting, in: frame, time_limit_s: 60").runner()
+    got = [runner(replace(frame(1, k), label=name))["risky"] for k, name in enumerate("aabab")]
+    assert [first for first, *_ in got] == [1, 2, 1, 3, 2]
+    assert len(runner.processes) == 1
 
 
 def test_it_runs_in_another_process_which_ends_with_the_runner() -> None:

@@ -12,7 +12,7 @@ from tactile_graph import Circle, Ellipse, Frame, Image, Mask, Points, Polygon, 
 from tactile_graph.engine.tables.columns import Column, OutputColumns, _columns
 from tactile_graph.engine.tables.rows import fields_in_tables, scalars
 from tactile_graph.engine.tables.table import without_columns
-from tactile_graph.vocabulary import words_and_unit
+from tactile_graph.vocabulary import error_name, words_and_unit
 
 
 class Inner(NamedTuple):
@@ -93,3 +93,15 @@ def test_a_record_that_counts_its_list_itself_gets_one_column_for_it():
 )  # fmt: skip
 def test_units_are_read_from_names(name, expected):
     assert words_and_unit(name) == expected
+
+
+@pytest.mark.parametrize(
+    ("measure", "expected"),
+    [
+        ("radius_cm", "radius_error_cm"), ("pressure_n_cm2", "pressure_error_n_cm2"),
+        ("vx_cm_s", "vx_error_cm_s"), ("torque_n_cm", "torque_error_n_cm"),
+        ("centre_v_cm", "centre_v_error_cm"),
+    ],
+)  # fmt: skip
+def test_an_errors_name_keeps_the_whole_unit_behind(measure, expected):
+    assert error_name(measure) == expected

@@ -8,7 +8,11 @@ import numpy as np
 
 from helpers_recordings import frames_of, write
 from tactile_graph import Frame
+from tactile_graph.steps import Report
+from tactile_graph.wires.frame_stack import FrameStack
+from tactile_graph.wires.stacks import ImageStack
 from tactile_graph_sources.inspection.measure import measure
+from tactile_graph_sources.readers.sequence.leaps import stacks_with_leaps_told
 
 
 def _recorded(folder: Path, times_s: list[float]) -> Path:
@@ -29,6 +33,17 @@ def test_time_that_leaps_ahead_is_counted_and_no_gap(tmp_path: Path) -> None:
     assert not any(f.gap for f in frames)
     assert not report.troubles
     assert report.counts["leaps in time of more than 20 usual steps"] == 1
+
+
+def test_times_that_repeat_are_counted_of_frames_and_of_stacks(tmp_path: Path) -> None:
+    times = [0.0, 0.0, 0.02, 0.02, 0.04, 0.04]
+    _, report = frames_of(_recorded(tmp_path, times))
+    assert report.counts["frames at the very time of the one before"] == 3
+    assert not report.troubles
+    images = ImageStack(np.ones((6, 3, 3)), (1.0, 1.0), (0.0, 0.0), "raw")
+    stack, told = FrameStack(images, np.arange(6), np.array(times)), Report()
+    assert len([*stacks_with_leaps_told(iter([stack]), told, "")]) == 6
+    assert told.counts["frames at the very time of the one before"] == 3
 
 
 def test_even_times_are_not_spoken_of(tmp_path: Path) -> None:

@@ -1,0 +1,62 @@
+"""A frame's first outline, by readings that a learned pad's gains have evened, if these hold."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.localise import AnyPad
+from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.single.model import Likeliest
+from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_pads.pad import Pad
+
+
+class FirstFit(NamedTuple):
+    """An even face's outline by one attempt, the readings as it has them, and fits that suit."""
+
+    fits: AnyPad
+    readings: Readings
+    even: Likeliest
+
+
+def first_fit(image: Image, pad: Pad, gap_cm: float | None, any_pad: AnyPad) -> FirstFit:
+    """Return the first fit of a frame, with or without the gains that a pad has learned.
+
+    Parameters
+    ----------
+    image : Image
+    pad : Pad
+    gap_cm : float, optional
+        As in `observed`.
+    any_pad : AnyPad
+
+    Notes
+    -----
+    Gains were learned under some objects and need not hold under others: foam spreads loads over
+    neighbours, and dividing by gains makes such readings less even, not more. Where they scatter
+    more like those that were not evened, both are fitted, and what is likelier is kept: the density
+    of readings' logarithms is the same but for that.
+
+    Raises
+    ------
+    RuleError, DataError, Degenerate
+        As of `observed`.
+    """
+    found = _fitted(observed(image, pad, gap_cm), any_pad)
+    plain = any_pad.unevened
+    if plain is None or not _scatters(found, any_pad.told.noise.sigma, plain.told.noise.sigma):
+        return found
+    other = _fitted(observed(image, pad, gap_cm, evened=False), plain)
+    return other if other.even.evidence > found.even.evidence else found
+
+
+def _fitted(readings: Readings, any_pad: AnyPad) -> FirstFit:
+    fits = any_pad.suited(readings)
+    return FirstFit(fits, *fits.first(readings))
+
+
+def _scatters(found: FirstFit, evened: float, uneven: float) -> bool:
+    """Return whether a fit's sigma is nearer to that of readings that are not evened."""
+    return 2.0 * float(found.even.mode.p[-2]) > math.log(evened) + math.log(uneven)
