@@ -15,8 +15,9 @@ from tactile_graph.docstring import parameters
 from tactile_graph.errors import TactileGraphError
 from tactile_graph.pipeline.completions import Nameable
 from tactile_graph.pipeline.declaration import RESERVED
-from tactile_graph.pipeline.plain import plain
+from tactile_graph.pipeline.plain import as_given
 from tactile_graph.plugins.registry import Registry
+from tactile_graph.steps.inner import written_type
 from tactile_graph.steps.settings import adapter
 from tactile_graph.steps.signature import Kind, Port, Setting, Signature, type_name
 
@@ -256,9 +257,9 @@ class _Maker:
             made = {}
         for model, inner in made.pop("$defs", {}).items():
             self.defs[f"{step}.{setting.name}.{model}"] = inner
-        words = f"{meaning} ({type_name(setting.annotation)})".strip()
+        words = f"{meaning} ({written_type(setting.annotation)})".strip()
         made = {**made, "description": words}
-        default = plain(setting.default) if not setting.required else None
+        default = as_given(setting.default) if not setting.required else None
         if default is not None and _is_json(default):
             made["default"] = default
         return made

@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 
-from tactile_graph import Degenerate, Image
+from tactile_graph import Degenerate, Image, Skip
 
 HANGS, CRASHES, FAILS, PRINTS = 1, 2, 3, 4
 
@@ -26,6 +26,35 @@ def moody(image: Image, *, plus: int = 0) -> int:
     if number == PRINTS:
         sys.stdout.write("something for people\n")
     return number + plus
+
+
+class FewError(Degenerate):
+    """An error that pickle cannot make anew."""
+
+    def __init__(self, what: str, n: int) -> None:
+        super().__init__(f"{n} {what}")
+
+
+class WarmingError(Skip):
+    """A skip that pickle cannot make anew."""
+
+    def __init__(self, n: int, of: int) -> None:
+        super().__init__(f"{n} of {of}")
+
+
+class OddError(Exception):
+    """Another that pickle cannot make anew."""
+
+    def __init__(self, one: str, other: str) -> None:
+        super().__init__(f"{one} and {other}")
+
+
+OWN_ERRORS = (FewError("cells", 3), WarmingError(1, 2), OddError("left", "right"), ValueError("no"))
+
+
+def raises(image: Image) -> int:
+    """Raise an error of its own."""
+    raise OWN_ERRORS[int(image.values[0, 0])]
 
 
 def pair(image: Image) -> list[Image]:

@@ -21,6 +21,7 @@ from tactile_graph.plugins.registry import installed
 
 PLUGIN = '''
 import os
+import sys
 import time
 from collections import deque
 
@@ -32,10 +33,18 @@ def tactile_graph_steps():
     return {"deadly": "deadly:deadly", "counted": "deadly:Counted", "lately": "deadly:Lately"}
 
 
-def deadly(frame: Frame, *, at: list[int] = [], slow_s: float = 0.0) -> Image:
-    """Give the image, or kill the process."""
+def deadly(
+    frame: Frame, *, at: list[int] = [], exits_at: int = -1, stops_at: int = -1, slow_s: float = 0.0
+) -> Image:
+    """Give the image, or end the process in one way or other."""
     if frame.index in at:
         os.kill(os.getpid(), 9)
+    if frame.index == exits_at:
+        sys.exit("gives up")
+    if frame.index == stops_at:
+        raise KeyboardInterrupt
+    if frame.index == 1:
+        os.write(1, b"as C does\\n")
     time.sleep(slow_s)
     return frame.image
 

@@ -14,7 +14,7 @@ from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.load import load_graph, parse_graph, resolve_again
 from tactile_graph.pipeline.resolve import SourceOverride
 from tactile_graph.pipeline.scope import Overrides
-from tactile_graph.plugins.registry import Registry, installed
+from tactile_graph.plugins.registry import Registry, installed, installed_and
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
 
@@ -33,8 +33,12 @@ if TYPE_CHECKING:
     from tactile_graph.live.live_stream import LiveStream
     from tactile_graph.wires.frame_stack import FrameStack
 
+Steps = Mapping[str, Callable[..., Any]]
 
-def load(name: str | Path, registry: Registry | None = None) -> Pipeline:
+
+def load(
+    name: str | Path, registry: Registry | None = None, *, steps: Steps | None = None
+) -> Pipeline:
     """Return the pipeline of that name or in that file.
 
     Parameters
@@ -43,18 +47,35 @@ def load(name: str | Path, registry: Registry | None = None) -> Pipeline:
         A name some plugin offers, or a path ending in ``.yaml`` or ``.yml``.
     registry : Registry, optional
         Where steps and names are looked up; the installed plugins if not given.
+    steps : mapping of str to callable, optional
+        Steps of a script or notebook by the names that the file has for them, beside those of the
+        installed plugins; not with ``registry``.
 
     Raises
     ------
     PipelineError
         With every problem of the file.
     UsageError
-        If there is no such pipeline or file.
+        If there is no such pipeline or file, or both ``registry`` and ``steps`` are given.
     """
-    return Pipeline.of(load_graph(name, registry))
+    return Pipeline.of(load_graph(name, _registry(registry, steps)))
 
 
-def loads(text: str, file: str = "<text>", registry: Registry | None = None) -> Pipeline:
+def _registry(registry: Registry | None, steps: Steps | None) -> Registry | None:
+    if steps is None:
+        return registry
+    if registry is not None:
+        raise UsageError("steps: a registry is given, which has its own; give one of the two")
+    return installed_and(steps)
+
+
+def loads(
+    text: str,
+    file: str = "<text>",
+    registry: Registry | None = None,
+    *,
+    steps: Steps | None = None,
+) -> Pipeline:
     """Return the pipeline that YAML text declares.
 
     Parameters
@@ -63,14 +84,17 @@ def loads(text: str, file: str = "<text>", registry: Registry | None = None) -> 
     file : str
         The name its errors carry.
     registry : Registry, optional
-        As in `load`.
+    steps : mapping of str to callable, optional
+        Both as in `load`.
 
     Raises
     ------
     PipelineError
         With every problem of the text.
+    UsageError
+        If both ``registry`` and ``steps`` are given.
     """
-    return Pipeline.of(parse_graph(text, file, registry))
+    return Pipeline.of(parse_graph(text, file, _registry(registry, steps)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -97,7 +121,9 @@ class Pipeline(Graph):
             If it was loaded with a registry of its own, which no other process has.
         """
         if self.registry is not None and self.registry is not installed():
-            raise UsageError(f"pipeline {self.name!r} has a registry of its own: not to be pickled")
+            raise UsageError(
+                f"pipeline {self.name!r} has a registry of its own, or steps: not to be pickled"
+            )
         return _unpickled, (self.text, self.file, dict(self.overrides), self.source_override)
 
     # -- running -----------------------------------------------------------------------------

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext, redirect_stdout
+from contextlib import contextmanager, nullcontext
 from typing import Any, NoReturn
 
 from rich.console import Console, ConsoleOptions, RenderableType
@@ -14,6 +13,7 @@ from rich.text import Text
 
 from tactile_graph.cli.readable import readable
 from tactile_graph.foreign_text import visible
+from tactile_graph.plugins.foreign_code import stdout_to_stderr
 
 WIDE = 200
 
@@ -38,7 +38,7 @@ class _Console(Console):
 @contextmanager
 def stdout_for_programs(kept: bool) -> Iterator[None]:
     """Send what plugins print to stderr while stdout is kept for lines that programs read."""
-    with redirect_stdout(sys.stderr) if kept else nullcontext():
+    with stdout_to_stderr() if kept else nullcontext():
         yield
 
 

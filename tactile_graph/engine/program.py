@@ -242,7 +242,8 @@ def _once(slot: int, time: int, body: Operation, blank: State) -> Operation:
     def operation(state: State) -> None:
         if state[slot] is None and blank[slot] is None:
             body(state)
-            blank[slot] = state[slot]
+            if state[slot].__class__ not in NO_VALUE:  # another call may have what this one lacks
+                blank[slot] = state[slot]
         elif state[slot] is None:  # frames of one block set out with the same blank
             state[slot] = blank[slot]
 

@@ -123,9 +123,12 @@ class Replay:
 
 
 def _renamed(outcome: Any, known: str, name: str) -> Any:
-    """Return an outcome that began at one node as begun at another; any other as it is."""
-    if isinstance(outcome, Skipped | Failed) and outcome.origin == known:
-        return outcome.at(name)
+    """Return an outcome that began at one node, or in it, as of another; any other as it is."""
+    if isinstance(outcome, Skipped | Failed):
+        if outcome.origin == known:
+            return outcome.at(name)
+        if outcome.origin.startswith(f"{known}/"):
+            return outcome.at(name + outcome.origin.removeprefix(known))
     return outcome
 
 

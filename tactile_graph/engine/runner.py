@@ -6,6 +6,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
+from itertools import chain
 from typing import Any, Generic, Self, TypeVar
 
 import numpy as np
@@ -23,7 +24,7 @@ from tactile_graph.engine.operations.step_operation import Operation, step_label
 from tactile_graph.engine.outcomes.outcomes import INNER, ITEM_FAILURES, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.program import make_program
-from tactile_graph.errors import RuleError, UsageError
+from tactile_graph.errors import Degenerate, RuleError, UsageError
 from tactile_graph.pipeline.facts import quantity_trouble
 from tactile_graph.pipeline.graph import FrameRule, Graph, Node
 from tactile_graph.steps.rules import square_wanted
@@ -119,6 +120,8 @@ class Runner(Generic[ResultT]):
         self._repeatable = self.plan.repeatable
         self._image = self.plan.image
         self._last: tuple[bytes, ResultT] | None = None
+        self._sure: ResultT | None = None
+        self._n_lost = 0
         self._shape: tuple[int, ...] = ()
         self._quantity = ""
         self._pitch_cm = (0.0, 0.0)
@@ -144,7 +147,22 @@ class Runner(Generic[ResultT]):
             last is not None
             and image.values.tobytes() == last[0]
             and _alike(image, last[1].frame.image)
+            and (last[1] is self._sure or self._lasts(last[1]))
         )
+
+    def _lasts(self, last: ResultT) -> bool:
+        """Return whether an equal frame comes to the same as the last one."""
+        if _may_pass(last):
+            return False
+        self._sure = last  # or each frame of an idle pad would look again
+        return True
+
+    @property
+    def _lost_calls(self) -> bool:
+        """Whether processes of steps left calls without an answer since this was asked last."""
+        before = self._n_lost
+        self._n_lost = sum(host.n_lost for host in self._apart.values())
+        return self._n_lost != before
 
     def forget(self) -> None:
         """Forget the last frame: the next one is computed, whatever it holds."""
@@ -232,7 +250,12 @@ class Runner(Generic[ResultT]):
         if self._repeatable:
             content = values.tobytes()
             last = self._last
-            if last is not None and content == last[0] and _alike(image, last[1].frame.image):
+            if (
+                last is not None
+                and content == last[0]
+                and _alike(image, last[1].frame.image)
+                and (last[1] is self._sure or self._lasts(last[1]))
+            ):
                 return last[1].again(frame)
         state = self._blank.copy()
         state[self._image] = image  # where nothing reads it, the frame takes its place
@@ -251,7 +274,7 @@ class Runner(Generic[ResultT]):
         result = _new(self._result)  # as its class would, in half the time
         result.plan = self.plan
         result._state = state
-        if decider is not None and result.decisions:
+        if (decider is not None and result.decisions) or (self._apart and self._lost_calls):
             self._last = None  # less than an equal frame may come to
         elif self._repeatable:
             self._last = content, result  # only now: an interrupted frame leaves nothing to reuse
@@ -314,16 +337,42 @@ class Runner(Generic[ResultT]):
             its = frames if len(own) == n else frames.take(own)
             done, unfinished = self._blocks(its, own)
             states = self._one_by_one(unfinished)
+        lost = bool(self._apart) and self._lost_calls
+        if len(own) < len(of):
+            of = self._tried_again(frames, of, done, states, lost)
         constants = [
             Constant(slot, first_settled(slot, done, states), self._blank[slot])
             for slot in open_slots
             if self._blank[slot] is not None
         ]
         block = Block(self.plan, self._result, frames, done, states, Repeats(of, before), constants)
-        if self._repeatable and len(own):
+        own = np.flatnonzero(of == np.arange(n))
+        if lost:
+            self._last = None
+        elif self._repeatable and len(own):
             result = block[int(own[-1])]
             self._last = result.frame.image.values.tobytes(), result
         return block
+
+    def _tried_again(
+        self,
+        frames: FrameStack,
+        of: NDArray[np.intp],
+        done: list[Group],
+        states: dict[int, list[Any]],
+        lost: bool,
+    ) -> NDArray[np.intp]:
+        """Compute the frames that would repeat what may pass, and return whom the others repeat."""
+        of = of.copy()
+        failing = [g.rows for g in done if _may_pass(self._result(self.plan, g.state))]
+        rows = [i for i, s in states.items() if lost or _may_pass(self._result(self.plan, s))]
+        for row in np.flatnonzero(np.isin(of, [*chain(*failing), *rows])).tolist():
+            if of[row] != row:
+                state = states[row] = self._blank.copy()
+                state[self._image], state[0] = frames[row].image, frames[row]
+                self._settle(state, [self._operations.run])
+                of[row] = row
+        return of
 
     @cached_property
     def _blocks(self) -> Blocks:
@@ -348,6 +397,11 @@ class Runner(Generic[ResultT]):
             state = states[row] = group.frame_state(place, self.plan.n_slots)
             self._settle(state, self._blocks.resume)
         return states
+
+
+def _may_pass(outcomes: Outcomes) -> bool:
+    """Return whether something failed that is not of the frame's data: it may pass by itself."""
+    return any(not isinstance(f.error, Degenerate | RuleError) for f in outcomes.failures)
 
 
 def _keeps(node: Node) -> bool:

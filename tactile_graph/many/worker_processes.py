@@ -266,7 +266,10 @@ def _came(data: bytes) -> _Came:
         function, args, kwargs = pickle.loads(data)
         return _Came(function(*args, **kwargs))
     except BaseException as error:  # told to whoever asked for it
-        return _Came(error=error, where=traceback.format_exc())
+        from tactile_graph.engine.outcomes.outcome import raised_at, raised_there
+
+        told = raised_there(error, raised_at(error))
+        return _Came(error=told, where=traceback.format_exc())
 
 
 def _packed(came: _Came) -> bytes:

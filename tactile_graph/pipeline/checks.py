@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from tactile_graph.errors import Mark, Problem, did_you_mean, one_of
 from tactile_graph.pipeline.conditions import compile_condition
+from tactile_graph.pipeline.document import on_one_line
 from tactile_graph.pipeline.facts import ref_facts
+from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.references import ConditionError
 from tactile_graph.pipeline.scope import Scope
 from tactile_graph.pipeline.wiring import Ref
@@ -82,6 +85,12 @@ def check_overrides(scope: Scope) -> None:
             inside = f"; inside it they are named {name}/node.setting"
             text = f"node {name!r} is no step and has no settings" + (
                 inside if nodes[name].use else "")  # fmt: skip
+        elif (parts := name.split("."))[0] in nodes:
+            node, setting, *inner = parts
+            value: Any = settings
+            for part in reversed(inner):
+                value = {part: value}
+            text = f"a setting is given whole: {node}.{setting}={on_one_line(plain(value))}"
         else:
             known = {*nodes, *(n for n in scope.nodes if "." not in n)}
             hint = did_you_mean(name, known) or f"; there are: {one_of(known)}"

@@ -196,8 +196,11 @@ def _load_inner(
         raise UsageError(f"{name!r}: a pipeline file ends in .yaml")
     found = beside(name, file) or name
     names, files = [n for n, _ in opened.within], [p for _, p in opened.within]
-    _refuse_circle(names, names, name)
-    path = find(found, registry, file)
+    try:
+        path = find(found, registry, file)
+    except UsageError:
+        _refuse_circle(names, names, name)  # a pipeline's own name, of which there is no other
+        raise
     target = path.resolve()
     _refuse_circle(names, files, target)
     if len(names) > MOST_LEVELS:

@@ -46,7 +46,7 @@ def foreign_code(name: str, label: str) -> Iterator[None]:
     with _Signals() as signals:
         told.start()
         try:
-            with _stdout_to_stderr():
+            with stdout_to_stderr():
                 yield
         except BaseException as error:
             if signals.came is None:
@@ -71,7 +71,7 @@ _DIVERTED = _Diverted()
 
 
 @contextmanager
-def _stdout_to_stderr() -> Iterator[None]:
+def stdout_to_stderr() -> Iterator[None]:
     """Have what is printed, or written to stdout's descriptor as C does, go to stderr."""
     with _DIVERTED.lock:
         if not _DIVERTED.n:
@@ -96,8 +96,16 @@ def _divert(back: ExitStack) -> None:
         return
     back.callback(os.close, kept)
     back.callback(os.dup2, kept, STDOUT)
+    back.callback(_flush_c)
     with suppress(OSError):  # there may be no stderr
         os.dup2(STDERR, STDOUT)
+
+
+def _flush_c() -> None:
+    """Have C write what it was told to print, before stdout is another's again."""
+    ctypes = sys.modules.get("ctypes")  # loading it would take longer than most plugins
+    with suppress(OSError, TypeError, AttributeError):  # there may be no C library to ask
+        ctypes.CDLL(None).fflush(None)  # type: ignore[union-attr]
 
 
 def _tell(name: str, label: str) -> None:

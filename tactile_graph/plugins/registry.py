@@ -367,3 +367,19 @@ def selected() -> str:
 def installed() -> Registry:
     """Return the registry of this environment's plugins; found once per process."""
     return Registry(found_plugins(), Selection.parse(selected()))
+
+
+def installed_and(steps: Mapping[str, str | Callable[..., Any]]) -> Registry:
+    """Return a registry of this environment's plugins and of steps given by their names.
+
+    They are a plugin ``own``: where another offers a step of the same name, ``own.NAME`` is this.
+    """
+
+    @hookspecs.hookimpl
+    def tactile_graph_steps() -> Mapping[str, str | Callable[..., Any]]:
+        return dict(steps)
+
+    given = ModuleType("own")
+    vars(given)["tactile_graph_steps"] = tactile_graph_steps
+    return Registry([*found_plugins(), ("own", "given", "", lambda: given)],
+                    Selection.parse(selected()))  # fmt: skip

@@ -5,11 +5,14 @@ from __future__ import annotations
 import dataclasses
 import types
 from collections.abc import Iterator, Mapping
-from typing import Any, Union, get_args, get_origin, get_type_hints
+from enum import Enum
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
-from tactile_graph.steps.signature import list_item, strip
+from tactile_graph.steps.signature import list_item, strip, type_name
 
 Place = tuple[str | int, ...]
+LONGEST = 100
+"""Characters that tell the fields of a record with their types; of a longer one the names do."""
 
 
 def fields(annotation: Any) -> dict[str, Any]:
@@ -77,6 +80,23 @@ def members(annotation: Any) -> list[Any]:
     if get_origin(bare) not in (Union, types.UnionType):
         return [bare]
     return [m for arm in get_args(bare) for m in members(arm)]
+
+
+def written_type(annotation: Any, within: tuple[Any, ...] = ()) -> str:
+    """Return a setting's type as a file may give it: ``'red' | 'blue'``, ``{a: int, b: str}``."""
+    bare, _ = strip(annotation)
+    if isinstance(bare, type) and issubclass(bare, Enum):
+        return " | ".join(repr(member.value) for member in bare)
+    inside = (*within, bare)
+    if get_origin(bare) in (Union, types.UnionType):
+        return " | ".join(written_type(arm, inside) for arm in get_args(bare))
+    if bare not in within and (known := fields(bare)):
+        told = ", ".join(f"{n}: {written_type(k, inside)}" for n, k in known.items())
+        return f"{{{told if len(told) <= LONGEST else ', '.join(known)}}}"
+    if get_origin(bare) in (None, Literal) or not get_args(bare):
+        return type_name(bare)
+    items = ("..." if k is Ellipsis else written_type(k, inside) for k in get_args(bare))
+    return f"{type_name(get_origin(bare))}[{', '.join(items)}]"
 
 
 def key_of(annotation: Any) -> Any:

@@ -20,6 +20,7 @@ from tactile_graph.steps.inner import (
     members,
     n_items,
     place,
+    written_type,
 )
 from tactile_graph.steps.keys import refuse_unknown_keys
 from tactile_graph.steps.signature import Setting, Signature, type_name
@@ -160,7 +161,7 @@ def _allowed(annotation: Any) -> str:
     kinds = members(annotation)
     if all(isinstance(kind, type) and kind in _WORDS for kind in kinds):
         return " or ".join(_WORDS[kind] for kind in kinds)
-    return type_name(annotation)
+    return written_type(annotation)
 
 
 def _unknown(signature: Signature, name: str, known: list[str]) -> str:

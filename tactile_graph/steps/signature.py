@@ -10,7 +10,16 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
-from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
+from typing import (
+    Annotated,
+    Any,
+    NotRequired,
+    Required,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import numpy as np
 
@@ -152,10 +161,14 @@ class Signature:
 
 
 def strip(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
-    """Return the bare type and the ``Annotated`` metadata."""
-    if get_origin(annotation) is Annotated:
+    """Return the bare type and the ``Annotated`` metadata, of a typed dict's field too."""
+    origin = get_origin(annotation)
+    if origin is Annotated:
         bare, *metadata = get_args(annotation)
-        return bare, tuple(metadata)
+        bare, inner = strip(bare)
+        return bare, (*inner, *metadata)
+    if origin in (Required, NotRequired):
+        return strip(get_args(annotation)[0])
     return annotation, ()
 
 
@@ -183,10 +196,16 @@ def _pick(annotation: Any, kind: type) -> Any:
 
 def _parameters(name: str, target: Callable[..., Any]) -> list[inspect.Parameter]:
     try:
-        parameters = inspect.signature(target).parameters.values()
+        return list(inspect.signature(target).parameters.values())
     except ValueError as error:
         raise PluginError(f"step {name!r}: its signature cannot be read: {error}") from error
-    return [p for p in parameters if p.name != "self"]
+
+
+def _of_method(name: str, target: type, method: str) -> list[inspect.Parameter]:
+    """Return the parameters of a class's method, without the instance, whatever that is called."""
+    parameters = _parameters(name, getattr(target, method))
+    static = isinstance(inspect.getattr_static(target, method), staticmethod)
+    return parameters if static else parameters[1:]
 
 
 def _hints(name: str, target: Callable[..., Any]) -> dict[str, Any]:
@@ -307,10 +326,10 @@ def _read_class(name: str, target: type) -> Signature:
     init = inspect.getattr_static(target, "__init__")
     has_init = inspect.isfunction(init)
     init_hints = _hints(name, init) if has_init else {}
-    init_parameters = _parameters(name, init) if has_init else []
+    init_parameters = _of_method(name, target, "__init__") if has_init else []
     from_init, settings = _split(name, init_hints, init_parameters)
     hints = _hints(name, call)
-    parameters = _parameters(name, call)
+    parameters = _of_method(name, target, "__call__")
     positional = [p for p in parameters if p.kind is not p.KEYWORD_ONLY]
     injected, extra = _split(name, hints, [p for p in parameters if p.kind is p.KEYWORD_ONLY])
     if extra:

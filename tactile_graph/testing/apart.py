@@ -57,7 +57,7 @@ class Apart:
                 report: StepReport = value
                 return report
             else:
-                what = process.end_in_words() if kind == ENDED else f"cannot be told: {value}"
+                what = process.end_in_words() if kind == ENDED else f"cannot be told: {value[0]}"
                 break
         self.close()
         return StepReport(name, (Broken((at,), what),), n_cases=1)

@@ -102,7 +102,7 @@ class Examination:
         """Try every case that this step can tell from the others."""
         usual, *others = all_cases()
         first = self.look_at(usual, self._inputs(usual))
-        kept = Kept({"answer": first.value})
+        kept = Kept.of_answer("answer", first.value)
         self.limit_s = max(LEAST_S, TIMES * first.seconds)
         comparable = self._look_at_copies(usual, first)
         seen = {pickle.dumps(self._inputs(usual))}
@@ -138,7 +138,7 @@ class Examination:
             self._watched(case, self.subject.call(), inputs)
         if self.subject.signature.stateful and case.name != ORDINARY:
             used = self._call()
-            before = Kept({"answer": self._try(used, self._inputs(ordinary())).value})
+            before = Kept.of_answer("answer", self._try(used, self._inputs(ordinary())).value)
             self._watched(case, used, self._inputs(case))
             if before.changed():
                 self._tell(case.name, WRITES_BEFORE)

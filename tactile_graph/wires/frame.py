@@ -83,6 +83,7 @@ class Frame:
     place: int | None = None
     own_number: int | None = None
     provides: ClassVar[Mapping[type, str]] = {Image: "image"}
+    columns_shown: ClassVar[tuple[str, ...]] = ()  # every table has what tells frames apart
 
     @classmethod
     def of(

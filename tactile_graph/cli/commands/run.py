@@ -475,10 +475,11 @@ class _Run:
             say.print(f"not shown, for want of width: {names}; -o gives them", style="dim",
                       soft_wrap=True)  # fmt: skip
         if self.form_of_table is not None and self.written:
-            from tactile_graph.engine.tables.table import without_one_unit
+            from tactile_graph.engine.tables.table import without_columns, without_one_unit
 
             several = without_one_unit(self.form_of_table, self.quantities)
-            say.print(several, style="yellow", soft_wrap=True) if several else None
+            for text in filter(None, (several, without_columns(self.columns))):
+                say.print(text, style="yellow", soft_wrap=True)
         written = self._lies_at() if self.written else None
         stays = getattr(self.lines, "stays", "") if self.written else ""
         for name, more in ((written, stays), (self.plot if drawn else None, "")):

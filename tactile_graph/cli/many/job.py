@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from tactile_graph.api.pipeline import Pipeline
+from tactile_graph.cli.endings import exited
 from tactile_graph.cli.output.outputs import Output, form_of
 from tactile_graph.cli.output.tally import LOOKED_THROUGH, Tally
 from tactile_graph.compiled import warm_up
@@ -135,10 +136,12 @@ class _Bench:
                             tally.add(came)
                             writer.write(came)
                             quantities.add(came.frame.image.quantity)
-                except Irregular:
+                except (Irregular, KeyboardInterrupt):
                     raise
                 except Exception as error:  # what was done before is kept
                     ended.append(for_the_way(error))
+                except BaseException as error:
+                    ended.append(exited(error))
         except Irregular as why:
             return Done(irregular=str(why) or "frames that cannot be read on their own")
         tally.outputs = []  # columns hold functions, and who asked knows them

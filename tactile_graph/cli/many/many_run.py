@@ -21,7 +21,12 @@ from tactile_graph.cli.output.tally import Tally
 from tactile_graph.cli.terminal import console
 from tactile_graph.engine.blocks.gathering import is_long
 from tactile_graph.engine.tables.columns import columns_of
-from tactile_graph.engine.tables.table import make_table, units_of, without_one_unit
+from tactile_graph.engine.tables.table import (
+    make_table,
+    units_of,
+    without_columns,
+    without_one_unit,
+)
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import uninterrupted, whole_file
 from tactile_graph.many.division import Division, division_of
@@ -81,6 +86,7 @@ class ManyRun:
     left_out: list[int] = field(default_factory=list)
     quantities: set[str] = field(default_factory=set)
     without_unit: str = ""
+    without_columns: str = ""
 
     def go(self) -> int:
         """Run, say what came of it, and return the exit code.
@@ -333,14 +339,14 @@ class ManyRun:
         name = self.asked.output.name
         if self.interrupted is None and self.error is None:
             text = "" if name == "-" else f"wrote {name}"
-        elif self.unfinished is not None:
+        elif self.unfinished is not None and self.low > self.asked.span.start:
             text = f"{self.n_kept} frames are kept: --resume goes on with {name}"
         else:
             text = ""
         if text:
             self.people.print(text, style="dim", soft_wrap=True)
-        if self.without_unit:
-            self.people.print(self.without_unit, style="yellow", soft_wrap=True)
+        for text in filter(None, (self.without_unit, self.without_columns)):
+            self.people.print(text, style="yellow", soft_wrap=True)
 
     def _provenance(self) -> None:
         asked = self.asked
@@ -350,6 +356,7 @@ class ManyRun:
             table = make_table(asked.pipeline, asked.outputs, asked.output.long)
             units = units_of(table, self.quantities)
             self.without_unit = without_one_unit(table, self.quantities)
+            self.without_columns = without_columns(self.columns)
         data = provenance(
             asked.pipeline, asked.seed, self.report,
             command=["tactile-graph", *sys.argv[1:]], complete=True,

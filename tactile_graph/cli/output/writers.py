@@ -188,6 +188,15 @@ class Csv:
         return csv_lines([columns[name] for name in self.names])
 
 
+def _stdout_for_itself() -> BinaryIO:
+    """Return stdout as a file that stays it, whatever takes its name and descriptor meanwhile."""
+    sys.stdout.flush()
+    try:
+        return open(os.dup(sys.stdout.fileno()), "wb")
+    except (OSError, ValueError, AttributeError):  # stdout is no file, as in tests
+        return sys.stdout.buffer
+
+
 class LineFile:
     """A file, or stdout, that takes whole lines; made when the first one comes.
 
@@ -211,7 +220,7 @@ class LineFile:
         """What is to be said of an older one that stays."""
         self._at_once = at_once
         self._older: BinaryIO | None = None
-        self._stdout = sys.stdout  # whatever takes its name while frames are run
+        self._stdout = _stdout_for_itself() if output == "-" else None
         self.broken = False
         """Whether a line could not be written."""
         self._file: BinaryIO | None = None
@@ -248,10 +257,7 @@ class LineFile:
             If another run is writing it, or it cannot be written.
         """
         if self._file is None:
-            if self.output == "-":
-                self._file = self._stdout.buffer
-            else:
-                self._file = self._opened()
+            self._file = self._stdout or self._opened()
             self._put(self._file, self.lines.head())
         return self._file
 

@@ -6,10 +6,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, get_args
 
 from tactile_graph.docstring import parameters, sections
-from tactile_graph.pipeline.plain import plain
+from tactile_graph.pipeline.plain import as_given
 from tactile_graph.pipeline.wiring import assignable, public_fields
 from tactile_graph.pipeline.yaml_numbers import in_yaml as dumped
 from tactile_graph.plugins.registry import Registry
+from tactile_graph.steps.inner import written_type
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.steps.signature import Kind, Port, Setting, Signature, strip, type_name
 from tactile_graph.wires import Frame, Image
@@ -41,7 +42,7 @@ def step_page(registry: Registry, name: str) -> Iterator[RenderableType]:
         yield from _table("ports", ("", "type", "rule", ""), rows)
     if signature.settings:
         rows = [
-            (s.name, type_name(s.annotation), _default(s), ", ".join(ranges(s.annotation)),
+            (s.name, written_type(s.annotation), _default(s), ", ".join(ranges(s.annotation)),
              meanings.get(s.name, s.meaning))
             for s in signature.settings
         ]  # fmt: skip
@@ -113,7 +114,7 @@ def _default(setting: Setting) -> str:
 
 def in_yaml(value: Any) -> str:
     """Return a value as YAML has it in one line."""
-    text = dumped(plain(value), default_flow_style=True, width=10_000, allow_unicode=True)
+    text = dumped(as_given(value), default_flow_style=True, width=10_000, allow_unicode=True)
     return text.removesuffix("\n...\n").strip()
 
 

@@ -119,7 +119,10 @@ def mapped(node: Node, context: Context) -> Call:
         context.inner_results[node.name] = results
 
         def column(name: str) -> Any:
-            items = [_of_item(r, name, lacking[i], i) for i, r in enumerate(results)]
+            items = [
+                lacking[i] if r is None else _of_item(r, name, node.name, i)
+                for i, r in enumerate(results)
+            ]
             return gathered(items, node.name)
 
         columns = [column(n) for n in names]
@@ -138,12 +141,15 @@ def _length(wired: Mapping[str, Any], over: Sequence[str]) -> int:
     return next(iter(counts.values()))
 
 
-def _of_item(result: Outcomes | None, name: str, image: Any, i: int) -> Any:
-    """Return what an embedded pipeline's output came to for an item; the item's own without one."""
-    if result is None:
-        return image
+def _of_item(result: Outcomes, name: str, node: str, i: int) -> Any:
+    """Return what an output of a node's embedded pipeline came to for an item."""
     outcome = result.outcome(name)
-    return outcome.of_item(i) if isinstance(outcome, Skipped | Failed) else outcome
+    if not isinstance(outcome, Skipped | Failed):
+        return outcome
+    frame = result.frame
+    if isinstance(frame, InnerFrame) and any(v is outcome for v in frame.given.values()):
+        return outcome  # it began before the pipeline
+    return outcome.within(node, i)
 
 
 def told_of_gaps(node: Node, step: Call) -> Call:

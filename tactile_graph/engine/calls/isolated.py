@@ -19,7 +19,15 @@ from queue import Empty, Queue
 from threading import Thread
 from typing import IO, Any, NamedTuple
 
-from tactile_graph.engine.calls.isolated_worker import ENDED, MADE, Message, received, sent
+from tactile_graph.engine.calls.isolated_worker import (
+    ENDED,
+    ERROR,
+    MADE,
+    Message,
+    received,
+    sent,
+)
+from tactile_graph.engine.outcomes.outcome import raised_there
 from tactile_graph.errors import Skip, TactileGraphError, UsageError
 from tactile_graph.out_of_reach import out_of_reach
 from tactile_graph.pipeline.graph import Node
@@ -144,6 +152,8 @@ class Host:
         self._orders: list[Order] = []
         self._process = Process()
         self._n_made = self._n_restarts = 0
+        self.n_lost = 0
+        """How many calls came to nothing that the step itself gave or raised."""
         self._ended_by = self._broken = ""
 
     @property
@@ -168,6 +178,7 @@ class Host:
 
     def run(self, number: int, args: Any, kwargs: Mapping[str, Any], limit_s: float | None) -> Any:
         """Return what a step gives; raises what `Isolated` does."""
+        self.n_lost += 1
         if self._n_made < len(self._orders):
             self._take_note(0.0)
         self._process.send((number, args, kwargs))
@@ -176,12 +187,13 @@ class Host:
         except Empty:
             self._start_anew(number, f"took longer than its {limit_s:g} s")
             why = f"{self._ended_by}: its process was killed, a new one starts"
-            raise OverrunError(why) from None
+            raise raised_there(OverrunError(why), "") from None
         if kind == ENDED:
             self._start_anew(number, self._process.end_in_words())
-            raise CrashedError(f"{self._ended_by}: a new one starts")
-        if kind != MADE and isinstance(value, Exception):
-            raise value
+            raise raised_there(CrashedError(f"{self._ended_by}: a new one starts"), "")
+        self.n_lost -= 1
+        if kind == ERROR:
+            raise raised_there(*value)
         return value
 
     def _take_note(self, seconds: float) -> None:
@@ -269,7 +281,7 @@ def _listen(stdout: IO[bytes], messages: Queue[Message]) -> None:
                 messages.put((ENDED, None))
                 return
             except Exception as error:  # what it gave cannot be read here
-                messages.put(("error", error))
+                messages.put((ERROR, (error, "")))
 
 
 def _ended(process: subprocess.Popen[bytes]) -> None:

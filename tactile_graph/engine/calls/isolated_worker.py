@@ -15,6 +15,7 @@ from typing import IO, Any
 
 MADE, VALUE, ERROR, ENDED = "made", "value", "error", "ended"
 Message = tuple[str, Any]
+"""What it is, and that; of an error that a call raised also where."""
 KERNELS = "tactile_graph.compiled.kernel"
 _LENGTH = struct.Struct("<Q")
 LOOK_S = 1.0
@@ -88,7 +89,7 @@ def serve(orders: IO[bytes], answers: IO[bytes], made: Callable[[], None]) -> No
         try:
             answer: Message = VALUE, steps[number](*args, **kwargs)
         except Exception as error:
-            answer = ERROR, error
+            answer = ERROR, _told(error)
         _answer(answers, answer)
 
 
@@ -124,13 +125,18 @@ class _Kernels:
         self._answering.close()
 
 
+def _told(error: Exception) -> tuple[Exception, str]:
+    """Return an error as it can be sent, and the line it was raised at."""
+    from tactile_graph.engine.outcomes.outcome import raised_at, travelling
+
+    return travelling(error), raised_at(error)
+
+
 def _answer(answers: IO[bytes], answer: Message) -> None:
     try:
         sent(answers, answer)
-    except (pickle.PicklingError, AttributeError, TypeError) as error:
-        kind, value = answer
-        told = f"{type(value).__name__}: {value}" if kind == ERROR else f"gave {error}"
-        sent(answers, (ERROR, RuntimeError(told)))
+    except Exception as error:  # whatever pickle says of it
+        sent(answers, (ERROR, (RuntimeError(f"gave {error}"), "")))
 
 
 if __name__ == "__main__":

@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import pickle
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from tactile_graph.errors import Degenerate, Skip, text_of
 
@@ -54,6 +55,10 @@ class Skipped:
     def of_item(self, i: int) -> Skipped:
         """Return the same as the outcome of a list's item."""
         return Skipped(self.origin, self._reason, self._values, (i, *self.item))
+
+    def within(self, node: str, i: int) -> Skipped:
+        """Return the same as the outcome of an item that a node ran a pipeline for."""
+        return self.at(f"{node}/{self.origin}" if self.origin else "").of_item(i)
 
     def told_by(self, change: Callable[[Any], Any]) -> Skipped:
         """Return the same with each value that its reason tells changed; itself if it has none."""
@@ -124,31 +129,42 @@ class Failed:
         item = (i, *self.item)
         return Failed(self.origin, self.error, self.where, self.inputs, self.step, item)
 
-    def __reduce__(self) -> tuple[Callable[..., Failed], tuple[Any, ...]]:
+    def within(self, node: str, i: int) -> Failed:
+        """Return the same as the outcome of an item that a node ran a pipeline for."""
+        return self.at(f"{node}/{self.origin}" if self.origin else "").of_item(i)
+
+    def __reduce__(self) -> tuple[type[Failed], tuple[Any, ...]]:
         """Pickle with an error of the same words, where the error itself is not to be pickled."""
         rest = (self.where, self.inputs, self.step, self.item)
-        if _travels(self.error):
-            return Failed, (self.origin, self.error, *rest)
-        return _told_of, (self.origin, type(self.error).__name__, text_of(self.error), *rest)
+        return Failed, (self.origin, travelling(self.error), *rest)
 
     def __repr__(self) -> str:
         return f"<failed at {self.origin!r}: {self.reason}>"
 
 
-def _travels(error: Exception) -> bool:
-    """Return whether an error is the same after pickling; a plugin's own may not even come back."""
+def travelling(error: Exception) -> Exception:
+    """Return an error that is the same after pickling: itself, or one of its name, words and kind.
+
+    A plugin's own may not even come back.
+    """
     try:
         again = pickle.loads(pickle.dumps(error))
     except Exception:
-        return False
-    return type(again) is type(error) and text_of(again) == text_of(error)
+        again = None
+    if type(again) is type(error) and text_of(again) == text_of(error):
+        return error
+    kind = next((k for k in (Degenerate, Skip) if isinstance(error, k)), Exception)
+    return _told(type(error).__name__, kind, text_of(error))
 
 
-def _told_of(origin: str, kind: str, text: str, *rest: Any) -> Failed:
-    """Return a failure whose error is known by its words alone."""
-    return Failed(origin, type(kind, (Exception,), {})(text), *rest)
+def _told(name: str, kind: type[Exception], text: str) -> Exception:
+    """Return an error that is known by its type's name and its words alone."""
+    again = lambda error: (_told, (name, kind, text))  # noqa: E731
+    made: Exception = type(name, (kind,), {"__reduce__": again})(text)
+    return made
 
 
+ErrorT = TypeVar("ErrorT", bound=BaseException)
 _CORE = str(Path(__file__).parents[2]) + os.sep
 
 Outcome = Any
@@ -229,11 +245,24 @@ def _describe(value: Any) -> str:
     return f"{name} of {count}" if isinstance(count, int) else name
 
 
+_THERE = "_tactile_graph_raised_at"
+
+
+def raised_there(error: ErrorT, where: str) -> ErrorT:
+    """Return an error with what `raised_at` is to say of it; "" for no line of anybody's."""
+    with suppress(AttributeError):  # it takes none: the line at which it came is told
+        setattr(error, _THERE, where)
+    return error
+
+
 def raised_at(error: BaseException) -> str:
     """Return ``file:line in function`` of the innermost frame an error passed through.
 
     Frames of this package are left out where another's called them: it is that line which is wrong.
+    Of an error of another process it is what `raised_there` said.
     """
+    if (told := getattr(error, _THERE, None)) is not None:
+        return str(told)
     passed = list[tuple[str, int, str]]()
     traceback = error.__traceback__
     while traceback is not None:

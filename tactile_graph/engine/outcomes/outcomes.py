@@ -176,8 +176,8 @@ class Outcomes(Mapping[str, Any]):
     def failures(self) -> list[Failed]:
         """The failures of this frame, each once, those of single items of a list included."""
         within = [
-            failed.of_item(i)
-            for results in self.inner.values()
+            failed.within(node, i)
+            for node, results in self.inner.items()
             for i, result in enumerate(results)
             if result is not None
             for failed in result.failures

@@ -13,7 +13,7 @@ from tactile_graph.engine.outcomes.notices import untold
 from tactile_graph.engine.outcomes.outcome import NO_VALUE
 from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.engine.tables.image_quantities import UNKNOWN, ByFrame, Told, told_of
-from tactile_graph.engine.tables.rows import scalars
+from tactile_graph.engine.tables.rows import fields_in_tables, scalars
 from tactile_graph.engine.tables.truth import error_names, errors_against, nearest
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.wiring import arms, field_type, public_fields
@@ -74,7 +74,7 @@ def _columns(output: str, key: str, kind: Any, told: Told = UNKNOWN) -> Iterator
             yield _column(output, key, str)
     elif isinstance(kind, type) and issubclass(kind, bool | int | float | str | np.generic):
         yield _column(output, key, kind)
-    elif shown := getattr(kind, "columns_shown", ()):
+    elif shown := fields_in_tables(kind):
         for name in shown:
             column = _column(output, f"{key}.{name}", _scalar(field_type(kind, name)))
             yield _in_images_unit(column, kind, name, told)

@@ -6,8 +6,8 @@ import dataclasses
 import math
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
-from functools import cache
-from typing import Any
+from functools import cache, lru_cache
+from typing import Any, Literal, get_origin
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from tactile_graph.engine.outcomes.outcome import (
 from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.engine.tables.truth import shape_kind
 from tactile_graph.errors import PluginError
+from tactile_graph.pipeline.wiring import arms, public_fields
 
 OF_FRAMES = ("frame", "time_s", "label")
 """The columns that say which frame a row is of."""
@@ -57,13 +58,45 @@ def free_key(key: str) -> str:
     return f"{key}.value" if taken else key
 
 
+def fields_in_tables(kind: Any) -> tuple[str, ...]:
+    """Return the fields of a record's type that stand in tables; none of a named tuple.
+
+    Where it does not say so itself (``columns_shown``) they are a dataclass's numbers, texts and
+    yes/no, and how many things it holds.
+    """
+    told: tuple[str, ...] | None = getattr(kind, "columns_shown", None)
+    if told is not None or hasattr(kind, "_fields") or not dataclasses.is_dataclass(kind):
+        return told or ()
+    of: Any = get_origin(kind) or kind
+    return _scalar_fields(of)
+
+
+@lru_cache(maxsize=256)
+def _scalar_fields(kind: Any) -> tuple[str, ...]:
+    types = public_fields(kind)
+    names = [f.name for f in dataclasses.fields(kind) if _is_scalar(types.get(f.name, Any))]
+    if "count" not in names and isinstance(types.get("count"), type):
+        names.insert(0, "count")
+    return tuple(names)
+
+
+def _is_scalar(kind: Any) -> bool:
+    """Return whether a type is a number, a text or yes/no, or one of these and None."""
+    kinds = [arm for arm in arms(kind) if arm is not type(None)]
+    return bool(kinds) and all(
+        get_origin(arm) is Literal
+        or (isinstance(arm, type) and issubclass(arm, bool | int | float | str | np.generic))
+        for arm in kinds
+    )
+
+
 def scalars(name: str, value: Any) -> dict[str, Any]:
     """Return a value as scalars named ``name`` or ``name.field``."""
     if isinstance(value, bool | int | float | str | np.generic):
         return {name: value.item() if isinstance(value, np.generic) else value}
     if isinstance(value, Done):
         return {name: "done"}
-    shown = getattr(value, "columns_shown", ())
+    shown = fields_in_tables(value.__class__)
     if shown:
         return {f"{name}.{field}": getattr(value, field) for field in shown}
     fields = getattr(value, "_fields", ())

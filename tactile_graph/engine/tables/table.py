@@ -78,6 +78,13 @@ def without_one_unit(table: Table, quantities: Collection[str]) -> str:
     return f"frames are in {frames}: {', '.join(names)} {have} no one unit" if names else ""
 
 
+def without_columns(outputs: Sequence[OutputColumns]) -> str:
+    """Return what to say of outputs of which a table holds no value; "" where there are none."""
+    names = [o.output for o in outputs if not o.values]
+    what = "its type tells no number" if len(names) == 1 else "their types tell no numbers"
+    return f"no columns of {', '.join(names)}: {what}; .jsonl holds all" if names else ""
+
+
 def _units(column: Column, quantities: Collection[str]) -> list[str]:
     by_frame = column.quantities
     if by_frame is None:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from helpers_graphs import STEPS, cases, frame, registry, shown
-from tactile_graph import Pipeline, loads
+from tactile_graph import Image, Pipeline, loads
 from tactile_graph.errors import UsageError
 
 FLOW = """
@@ -98,3 +98,22 @@ def _goes_on(folder: Path, case: tuple[dict[str, Any], dict[str, Any]]) -> None:
 @pytest.mark.slow
 def test_any_pipeline_goes_on_as_if_nothing_had_happened(tmp_path: Path) -> None:
     _goes_on(tmp_path)
+
+
+def test_an_error_that_passes_is_not_kept_for_equal_frames_nor_for_all() -> None:
+    left = [1, 1]
+
+    def busy(image: Image) -> int:
+        if left:
+            left.pop()
+            raise OSError("device busy")
+        return 1
+
+    def table() -> int:
+        return busy(None)  # type: ignore[arg-type]
+
+    text = "pipeline: p\nnodes: {a: {step: busy, in: frame}, b: {step: table}}\noutputs: [a, b]"
+    runner = loads(text, "p.yaml", registry({"busy": busy, "table": table})).runner()
+    results = [runner(frame(1, i)) for i in range(3)]
+    assert [len(r) for r in results] == [0, 2, 2]
+    assert [r.reused for r in results] == [False, False, True]

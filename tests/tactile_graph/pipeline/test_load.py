@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import re
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 import pytest
 from annotated_types import Ge, Gt, Len, MultipleOf
 
@@ -526,6 +528,7 @@ def test_the_text_of_an_error_shows_place_words_and_line(reg: Any) -> None:
         ),
         ("f.level_v", "node 'f' is no step and has no settings"),
         ("m/x.level_v", "no node named 'm/x'"),
+        ("m.model.a.b", "a setting is given whole: m.model={a: {b: -1}}"),
         ("u/q.level_v", "setting q.level_v: no node named 'q'"),
     ],
 )
@@ -586,6 +589,11 @@ def test_a_file_may_use_and_evolve_from_its_neighbour(reg: Any, tmp_path: Path) 
         "pipeline: next\nevolves: inner.yaml\nnodes: {u: {use: inner.yaml}}\noutputs: [u.m]\n"
     )
     assert list(load(tmp_path / "next.yaml", reg).nodes) == ["u/m", "u/n", "u.m", "u.n"]
+
+
+def test_a_pipeline_may_use_another_of_its_own_name(reg: Any) -> None:
+    text = text_of("m: {use: inner}", "outputs: [m.m]").replace("pipeline: p", "pipeline: inner")
+    assert "m/m" in loads(text, "mine.yaml", reg).nodes
 
 
 def test_a_file_that_uses_itself_under_another_name_is_a_circle(reg: Any, tmp_path: Path) -> None:
@@ -680,3 +688,16 @@ def test_a_name_is_looked_for_as_no_file() -> None:
     with files_read(found), pytest.raises(UsageError, match="no pipeline named"):
         load("nothing")
     assert not [path for path, stamp in found.items() if stamp is None]
+
+
+def test_a_script_gives_steps_of_its_own_by_name(reg: Any) -> None:
+    def mine(image: Image, *, gain: float = 2.0) -> float:
+        return gain * image.peak
+
+    text = "pipeline: p\nnodes: {a: {step: mine, in: frame}}\noutputs: [a]"
+    p = loads(text, steps={"mine": mine})
+    assert [r["a"] for r in p.with_settings({"a.gain": 3}).stream([np.ones((2, 2))])] == [3.0]
+    with pytest.raises(UsageError, match="registry of its own, or steps: not to be pickled"):
+        pickle.dumps(p)
+    with pytest.raises(UsageError, match="steps: a registry is given"):
+        loads(text, registry=reg, steps={"mine": mine})

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Annotated, Any, ClassVar, Literal
+from enum import Enum
+from typing import Annotated, Any, ClassVar, Literal, NotRequired
 
 import pytest
 from annotated_types import Ge, Gt
 from typing_extensions import TypedDict
 
+from tactile_graph.pipeline.plain import as_given
+from tactile_graph.steps.inner import written_type
 from tactile_graph.steps.settings import spelled, validate_settings
 from tactile_graph.steps.signature import read_signature
 
@@ -30,9 +33,22 @@ class Outer:
 
 class Typed(TypedDict, total=False):
     gain: Annotated[float, Ge(0)]
+    note: NotRequired[str]
 
 
-def takes(image: int, *, model: Outer | None = None, typed: Typed | None = None, n: int = 3) -> int:
+class Colour(Enum):
+    RED = "red"
+    BLUE = "blue"
+
+
+def takes(
+    image: int,
+    *,
+    model: Outer | None = None,
+    typed: Typed | None = None,
+    n: int = 3,
+    colour: Colour = Colour.RED,
+) -> int:
     """Take settings."""
     return image
 
@@ -62,11 +78,27 @@ def troubles(**given: Any) -> dict[str, str]:
         ),
         ({"weight": 1, "sure": "perhaps"}, "model.sure", "must be true or false, got 'perhaps'"),
         ({}, "model", "'weight' is missing (a number)"),
-        ({"weight": 1, "inner": 3}, "model.inner", "must be Inner, got 3"),
+        (
+            {"weight": 1, "inner": 3},
+            "model.inner",
+            "must be {depth: int, kind: 'soft' | 'hard'}, got 3",
+        ),
     ],
 )
 def test_a_trouble_within_a_mapping_names_the_field(model, place, message) -> None:
     assert troubles(model=model) == {place: message}
+
+
+def test_enums_and_fields_that_may_be_absent_are_told_as_a_file_gives_them() -> None:
+    told = "must be 'red' | 'blue', got 'RED' (Input should be 'red' or 'blue')"
+    assert troubles(typed={"note": 4}, colour="RED") == {
+        "typed.note": "must be a text, got 4",
+        "colour": told,
+    }
+    assert written_type(list[Colour | None]) == "list['red' | 'blue' | None]"
+    assert as_given([Colour.RED, Inner(2), {"a": (1,)}]) == [
+        "red", {"depth": 2, "kind": "soft"}, {"a": [1]},
+    ]  # fmt: skip
 
 
 def test_an_unknown_field_unlike_any_other_is_answered_with_all_there_are() -> None:

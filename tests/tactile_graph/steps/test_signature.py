@@ -96,6 +96,21 @@ def test_a_class_takes_settings_at_init_and_ports_at_call() -> None:
     assert s.output is Image
 
 
+def test_only_a_methods_instance_is_no_parameter_whatever_it_is_called() -> None:
+    def step(image: Image, *, self: float = 1.0) -> float:
+        return self
+
+    class This:
+        def __init__(this, *, n: int = 3) -> None: ...  # noqa: N805
+
+        def __call__(this, image: Image) -> float:  # noqa: N805
+            return 1.0
+
+    assert [s.name for s in read_signature("step", step).settings] == ["self"]
+    this = read_signature("this", This)
+    assert ([p.name for p in this.ports], [s.name for s in this.settings]) == (["image"], ["n"])
+
+
 def test_a_class_without_init_or_with_a_dataclasses_init_is_fine() -> None:
     class Bare:
         def __call__(self, image: Image) -> int:

@@ -94,6 +94,10 @@ class TwoWordsError(Exception):
         super().__init__(f"{one} {two}")
 
 
+class TwoWordsDegenerate(TwoWordsError, Degenerate):  # noqa: N818
+    """The same, but expected."""
+
+
 @pytest.mark.parametrize("way", WAYS)
 def test_results_are_as_before_whatever_was_skipped_or_failed(way: Callable[[Any], Any]) -> None:
     pipeline = load("circle-1").with_source("simulate", scene="discs", frames=4)
@@ -112,7 +116,8 @@ def test_results_are_as_before_whatever_was_skipped_or_failed(way: Callable[[Any
 def test_a_failure_keeps_its_words_though_its_error_is_not_to_be_pickled(
     way: Callable[[Any], Any],
 ) -> None:
-    for error in (TwoWordsError("too", "dark"), Degenerate("no points")):
+    own = TwoWordsError("too", "dark"), TwoWordsDegenerate("too", "few")
+    for error in (*own, Degenerate("no points")):
         failed = Failed("a", error, "a.py:3", "an image", "step 'a'", (2,))
         again = way(failed)
         assert (again.reason, again.kind, repr(again)) == (

@@ -306,6 +306,31 @@ def test_killed_workers_lose_nothing(folder: Path, whole: bytes) -> None:
     assert (folder / "k.csv").read_bytes() == whole
 
 
+def ended(folder: Path, name: str, setting: str) -> tuple[int, str]:
+    """Return how a run ends of which a step ends the program, and what it says."""
+    words = "run", "deadly.yaml", "a.zarr", "-o", name, "--workers", "2"
+    got = ran_here(folder, *words, "--set", f"image.{setting}")
+    assert not (folder / name).exists()
+    return got.returncode, got.stderr
+
+
+@pytest.mark.slow
+def test_a_step_that_ends_the_program_is_told_and_what_was_done_is_kept(folder: Path) -> None:
+    code, said = ended(folder, "exits.csv", "exits_at=300")
+    assert code == 2
+    assert "300 frames are kept: --resume goes on with exits.csv" in said
+    assert re.search(r"SystemExit\('gives up'\), .*deadly\.py:\d+ in deadly", said)
+    code, said = ended(folder, "stops.csv", "stops_at=0")
+    assert (code, "kept" in said) == (130, False)
+
+
+@pytest.mark.slow
+def test_what_a_step_writes_as_c_does_is_kept_from_the_lines(folder: Path) -> None:
+    got = ran(folder, "run", "deadly.yaml", "a.zarr", "-o", "-", "--frames", "0:4")
+    assert [json.loads(line)["frame"] for line in got.stdout.splitlines()] == [0, 1, 2, 3]
+    assert "as C does" in got.stderr
+
+
 @pytest.mark.slow
 @unlike_windows
 @pytest.mark.parametrize(("number", "recording"), [

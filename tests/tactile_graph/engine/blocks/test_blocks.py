@@ -106,8 +106,15 @@ def test_a_step_that_keeps_a_state_sees_the_frames_in_their_order() -> None:
 
 def test_a_frame_equal_to_the_last_one_reuses_its_result_across_blocks() -> None:
     frames = [frame(n, i) for i, n in enumerate([5, 5, 5, 5, 5, 5, 2, 2, 2, 3])]
-    results = assert_blocks_are_frames(ladder(), frames, size=4)
+    degenerate = ladder(LADDER.replace("bad: 2", "bad: 3"))
+    results = assert_blocks_are_frames(degenerate, frames, size=4)
     assert [r.reused for r in results] == [0, 1, 1, 1, 1, 1, 0, 1, 1, 0]
+
+
+def test_a_frame_equal_to_one_that_failed_by_an_error_is_tried_again() -> None:
+    frames = [frame(n, i) for i, n in enumerate([5, 5, 5, 5, 5, 5, 2, 2, 2, 3])]
+    results = assert_blocks_are_frames(ladder(), frames, size=4)
+    assert [r.reused for r in results] == [0, 0, 0, 0, 0, 0, 0, 1, 1, 0]
 
 
 def test_frames_of_several_shapes_grids_and_validities_make_blocks_of_their_own() -> None:

@@ -24,10 +24,12 @@ from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.pipeline.graph import Isolation
 from tactile_graph.plugins.registry import Registry
+from tactile_graph.wires.frame_stack import FrameStack
 
 pytestmark = pytest.mark.slow
 OWN = {
     "moody": steps.moody,
+    "raises": steps.raises,
     "counting": steps.Counting,
     "elsewhere": steps.elsewhere,
     "readiness": kernel_steps.readiness,
@@ -52,7 +54,6 @@ def run_until_back(runner: Any, number: int, seconds: float = 60.0) -> list[Any]
     end, results = time.monotonic() + seconds, []
     while time.monotonic() < end:
         results.append(runner(frame(number, len(results))))
-        runner.forget()
         if "risky" in results[-1]:
             return results
         time.sleep(0.02)
@@ -84,7 +85,15 @@ def test_a_step_that_crashes_fails_its_node_and_is_started_anew() -> None:
     outcome = runner(frame(steps.CRASHES)).outcome("risky")
     assert isinstance(outcome, Failed)
     assert "ended its process by SIGKILL: a new one starts" in outcome.reason
+    assert outcome.where == ""  # no line of anybody's
     assert run_until_back(runner, 7)[-1]["risky"] == 7
+
+
+def test_frames_equal_to_one_that_it_did_not_answer_are_not_reused_in_blocks_either() -> None:
+    runner = pipeline("step: moody, in: frame, isolated: true").runner()
+    stack = FrameStack.of([frame(steps.CRASHES, i) for i in range(3)])
+    first, second = runner.block(stack), runner.block(stack)
+    assert not [r for r in [*first, *second] if r.reused]
 
 
 def test_no_call_waits_for_a_compiler_which_would_count_for_its_time() -> None:
@@ -100,6 +109,16 @@ def test_what_the_step_raises_and_prints_comes_through(capfd: pytest.CaptureFixt
     failed = runner(frame(steps.FAILS)).outcome("risky")
     assert (failed.kind, failed.reason) == ("degenerate", "too little")
     assert runner(frame(steps.PRINTS))["risky"] == steps.PRINTS
+
+
+def test_what_a_step_raises_is_told_as_at_home_with_the_line_of_its_code() -> None:
+    at_home = pipeline("step: raises, in: frame").runner()
+    away = pipeline("step: raises, in: frame, isolated: true").runner()
+    for i in range(len(steps.OWN_ERRORS)):
+        one, other = (run(frame(i)).outcome("risky") for run in (at_home, away))
+        assert type(one) is type(other)
+        told = "kind", "reason", "where"
+        assert [getattr(other, t, "") for t in told] == [getattr(one, t, "") for t in told]
 
 
 def test_state_and_random_numbers_are_those_of_the_step_at_home() -> None:
@@ -235,7 +254,6 @@ def test_a_step_that_ends_the_process_takes_the_state_of_those_beside_it_and_is_
     end = time.monotonic() + 60
     while "sum" not in (result := runner(frame(9, 3))):
         assert time.monotonic() < end
-        runner.forget()
         time.sleep(0.02)
     assert result["sum"][0] == 1
 

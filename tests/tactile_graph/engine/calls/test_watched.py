@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -60,6 +60,58 @@ def test_a_step_that_writes_into_its_input_fails() -> None:
     with pytest.raises(PluginError, match="writes into image, which"):
         step(image=given)
     assert (given.values == 1.0).all()
+
+
+@dataclass
+class Found:
+    peaks: list[float]
+    total: float = 0.0
+    _known: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass
+class Number:
+    n: int = 0
+
+
+@pytest.mark.parametrize(
+    "write",
+    [
+        lambda found, table: found.peaks.sort(),
+        lambda found, table: setattr(found, "total", 99.0),
+        lambda found, table: table.pop("a"),
+        lambda found, table: table["in"][0].add(3),
+    ],
+)
+def test_a_step_that_writes_into_a_list_dict_set_or_record_fails(write: Any) -> None:
+    def step(found: Found, table: dict[str, Any]) -> float:
+        found._known["asked"] = 1.0  # what it keeps for itself
+        write(found, table)
+        return 1.0
+
+    found, table = Found([3.0, 1.0]), {"a": 1.0, "in": ({1, 2},)}
+    with pytest.raises(PluginError, match=r"writes into (found|table), which others read"):
+        watched(step, "step mine")(found=found, table=table)
+    assert (found.peaks, found.total, table) == ([3.0, 1.0], 0.0, {"a": 1.0, "in": ({1, 2},)})
+
+
+def test_a_step_may_go_on_with_the_list_it_gave_but_not_with_the_record() -> None:
+    peaks, number = [1.0], Number()
+
+    def listed() -> list[float]:
+        peaks.append(1.0)
+        return peaks
+
+    def counted() -> Number:
+        number.n += 1
+        return number
+
+    step = watched(listed, "step listed")
+    assert [len(step()), len(step())] == [2, 3]
+    step = watched(counted, "step counted")
+    step()
+    with pytest.raises(PluginError, match="step counted writes into what it gave before"):
+        step()
 
 
 def test_a_step_that_writes_into_what_it_gave_before_fails() -> None:

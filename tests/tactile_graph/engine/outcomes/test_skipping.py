@@ -554,11 +554,11 @@ def test_each_runs_a_pipeline_over_a_list_and_keeps_the_results_of_its_items(tmp
     p = using(tmp_path, "i: {step: images, in: frame}\nu: {use: inner, in: i, each: true}", "u")
     result = run(p)
     skipped, *rest = result["u"].s
-    assert (rest, skipped.origin, skipped.item) == ([5, 6], "s", (0,))
+    assert (rest, skipped.origin, skipped.item) == ([5, 6], "u/s", (0,))
     *rest, failed = result["u"].t
-    assert (rest, failed.origin, failed.item) == ([3, 4], "t", (2,))
+    assert (rest, failed.origin, failed.item) == ([3, 4], "u/t", (2,))
     assert [r.frame.image.peak for r in result.inner["u"]] == [3, 4, 5]
-    assert [(f.origin, f.item) for f in result.failures] == [("t", (2,))]
+    assert [(f.origin, f.item) for f in result.failures] == [("u/t", (2,))]
     assert run(p, 0).outcome("u").reason == "no items to run for"
 
 
@@ -604,7 +604,7 @@ def test_a_failed_item_fails_a_guard_over_items(tmp_path: Any) -> None:
     g: {step: add1, in: frame.index, when: any(u.t > 0)}
     h: {step: add1, in: frame.index, when: count(u.s > 5) == 1}"""
     result = run(using(tmp_path, nodes, "g, h"))
-    assert (result.outcome("g").origin, result.outcome("g").item) == ("t", (2,))
+    assert (result.outcome("g").origin, result.outcome("g").item) == ("u/t", (2,))
     assert result["h"] == 1
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import pytest
 
-from tactile_graph import Circle, Ellipse, Image, Mask, Points, Polygon, Rectangle
-from tactile_graph.engine.tables.columns import _columns
-from tactile_graph.engine.tables.rows import scalars
+from tactile_graph import Circle, Ellipse, Frame, Image, Mask, Points, Polygon, Rectangle
+from tactile_graph.engine.tables.columns import Column, OutputColumns, _columns
+from tactile_graph.engine.tables.rows import fields_in_tables, scalars
+from tactile_graph.engine.tables.table import without_columns
 from tactile_graph.vocabulary import error_name, words_and_unit
 
 
@@ -29,6 +31,24 @@ class Counted(NamedTuple):
     count: int
 
 
+@dataclass
+class Record:
+    total: float
+    name: str | None
+    cells: np.ndarray
+    side: Literal["left", "right"] = "left"
+    _own: int = 0
+
+
+@dataclass(frozen=True)
+class Several:
+    items: tuple[int, ...]
+
+    @property
+    def count(self) -> int:
+        return len(self.items)
+
+
 CIRCLE = Circle(1.0, 2.0, 3.0)
 VALUES = [
     (float, 1.5), (int, 2), (bool, True), (str, "x"), (np.float64, np.float64(1.0)),
@@ -38,6 +58,7 @@ VALUES = [
     (Polygon, Polygon(np.eye(3)[:, :2].copy())), (Points, Points(np.zeros((3, 2)))),
     (Image, Image(np.ones((2, 2)))), (Mask, Mask(np.ones((2, 2), bool))),
     (list[Circle], (CIRCLE,)), (tuple[float, ...], (1.0, 2.0)),
+    (Record, Record(1.0, None, np.ones(2))), (Several, Several((1, 2))),
     (Inner, Inner(1.0, "n")), (Outer, Outer(Inner(1.0, "n"), [CIRCLE], CIRCLE)),
 ]  # fmt: skip
 
@@ -45,6 +66,16 @@ VALUES = [
 @pytest.mark.parametrize(("kind", "value"), VALUES, ids=lambda v: str(v)[:30])
 def test_a_types_columns_are_its_values_scalars(kind: Any, value: Any):
     assert [c.key for c in _columns("out", "out", kind)] == list(scalars("out", value))
+
+
+def test_a_dataclass_has_its_numbers_texts_and_counts_in_tables_and_a_dict_is_told_of():
+    assert fields_in_tables(Record) == ("total", "name", "side")
+    assert fields_in_tables(Several) == ("count",)
+    assert fields_in_tables(Frame) == ()  # what tells frames apart is there
+    known = OutputColumns("known", (Column("known", "known", "", "", float),), ())
+    told = "no columns of d: its type tells no number; .jsonl holds all"
+    assert without_columns([known, OutputColumns("d", (), ())]) == told
+    assert without_columns([known]) == ""
 
 
 def test_a_record_that_counts_its_list_itself_gets_one_column_for_it():
