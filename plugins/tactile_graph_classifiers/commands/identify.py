@@ -59,7 +59,7 @@ def identify(
 
     if not recordings and source is None:
         raise UsageError("name the recordings to identify, or a --source")
-    ObjectDatabase(database, timeout_s).summaries()  # what is wrong with it, before the pipeline
+    known = ObjectDatabase(database, timeout_s).known()  # what is wrong with it comes first
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
     node = _identifying(opened, only)
     opened = opened.with_settings({f"{node}.database": str(database)})
@@ -72,6 +72,8 @@ def identify(
     for line in report.few_troubles():
         say(line, err=True)
     lines.summarise()
+    if known.few:
+        say(f"strangers may pass for known: {known.few}; learn more", err=True)
     if lines.n_failed:
         click.get_current_context().exit(SOME_FAILED)
 

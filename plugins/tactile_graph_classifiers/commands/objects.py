@@ -11,7 +11,12 @@ import numpy as np
 from tactile_graph.cli.say import hand_over, say
 from tactile_graph.cli.targets import check_targets
 from tactile_graph.errors import UsageError
-from tactile_graph_classifiers.commands.shared import database_option, print_table, tell_apart
+from tactile_graph_classifiers.commands.shared import (
+    database_option,
+    print_table,
+    tell_apart,
+    tell_few,
+)
 
 if TYPE_CHECKING:
     from tactile_graph_classifiers.database.known import Known, KnownObject
@@ -82,6 +87,8 @@ def _list(known: Known) -> None:
     print_table(f"{known.where}{by}{unit}", ["object", "shape ", "readings", *shown], rows)
     if known.choice is not None:
         say(f"{known.choice}.")
+        if known.few:
+            tell_few(known)
 
 
 def _spread(known: Known, it: KnownObject, feature: str) -> str:

@@ -12,6 +12,7 @@ from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
+    from tactile_graph_classifiers.database.known import Known
     from tactile_graph_classifiers.database.store import ObjectDatabase
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -57,6 +58,20 @@ def tell_apart(store: ObjectDatabase) -> None:
     choice = choose(Examples.of(known))
     store.keep(choice, known)
     say(f"{store.path}: {choice}")
+    if known.few:
+        tell_few(known)
+
+
+def tell_few(known: Known) -> None:
+    """Say that how well objects are told apart is not known by few readings.
+
+    Parameters
+    ----------
+    known : Known
+        Of which some object has few.
+    """
+    say(f"these shares tell little yet: {known.few}, which leave it guessing how much one object"
+        " varies; learn more", err=True)  # fmt: skip
 
 
 def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
-from tactile_graph_classifiers.database.choice import Choice
+from tactile_graph_classifiers.database.choice import FEW, Choice
 from tactile_graph_classifiers.database.statistics import Statistics
 
 Array = NDArray[np.float64]
@@ -92,6 +92,12 @@ class Known:
     def covariances(self) -> Array:
         """Unbiased covariance of each object, shape (K, F, F)."""
         return np.array([o.statistics.covariance for o in self.objects])
+
+    @property
+    def few(self) -> str:
+        """What to say of objects with fewer than `FEW` readings; empty where there are none."""
+        few = [f"{o.name} ({o.statistics.n})" for o in self.objects if o.statistics.n < FEW]
+        return f"fewer than {FEW} readings of {one_of(few, 6)}" if few else ""
 
     def chosen(self, features: Sequence[str] | None) -> Known:
         """Return the objects with these features alone.

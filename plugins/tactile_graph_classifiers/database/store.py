@@ -79,7 +79,7 @@ class ObjectDatabase:
         Returns
         -------
         int
-            How many of them were there before, of the same source and to the last digit.
+            How many of them their object had before, to the last digit, whatever file they are of.
 
         Raises
         ------
@@ -247,12 +247,11 @@ class ObjectDatabase:
 
 
 def _again(lesson: Lesson, old: KnownObject | None) -> int:
-    """Return how many readings of a lesson an object has already, of the same source."""
+    """Return how many readings of a lesson an object has already, to the last digit."""
     if old is None:
         return 0
-    there = {(of, *values) for of, values in zip(old.sources, old.readings.tolist(), strict=True)}
-    given = zip(lesson.sources, lesson.readings, strict=True)
-    return sum((source, *values) in there for source, values in given)
+    there = set(map(tuple, old.readings.tolist()))
+    return sum(tuple(values) in there for values in lesson.readings.tolist())
 
 
 def _checked(lesson: Lesson, setting: Setting) -> Lesson:

@@ -170,6 +170,22 @@ def choose(examples: Examples) -> Choice:
                   found)  # fmt: skip
 
 
+def left_out_names(examples: Examples, manner: Manner) -> tuple[Labels, Labels]:
+    """Return which objects readings that were left out are of, and which they were named, (N,).
+
+    Parameters
+    ----------
+    examples : Examples
+    manner : Manner
+    """
+    true, named = [np.zeros(0, np.intp)], [np.zeros(0, np.intp)]
+    for learned, coordinates, labels in _without_readings(examples, manner.shrinkage, PARTS):
+        true.append(labels)
+        scores = learned.discriminant(manner)(coordinates)
+        named.append(scores.unlikeliness.argmin(axis=1))
+    return np.concatenate(true), np.concatenate(named)
+
+
 def left_out_squares(examples: Examples, manner: Manner, n_presses: int = 1) -> Array:
     """Return squared distances of what was left out to what it was named, shape (N,).
 

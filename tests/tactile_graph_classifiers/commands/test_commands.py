@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -83,9 +84,37 @@ def test_learning_the_same_frames_twice_is_told(recordings):
     code, answered, told = run("learn", "small", recordings["small"], "--frames", "2:7")
     assert code == 0
     assert "5 readings learned, 9 in all" in answered
-    assert "2 of these were learned before, from the same frames, and count twice now; " in told
+    assert "2 of these were learned before, from the same frames or a copy of them, and" in told
     assert "tactile-graph forget small begins anew" in told
+    shutil.copy(recordings["small"], "copy.npz")
+    assert "7 of these were learned before" in call("learn", "small", "copy.npz", "--frames", 7)[1]
     assert "count twice" not in call("learn", "large", recordings["small"], "--frames", 3)[1]
+
+
+@pytest.mark.slow
+def test_a_name_like_a_known_one_is_told_with_whether_they_look_the_same(recordings):
+    learned(recordings)
+    told = run("learn", " Small", recordings["small"])[2]
+    assert "'Small' is a new object beside 'small', " in told
+    assert "so they look the same; did you mean 'small'? Then tactile-graph forget Small" in told
+    assert "did you mean" not in run("learn", "Small", recordings["small"])[2]
+    told = run("learn", "LARGE", recordings["small"])[2]
+    assert "beside 'large', 0 of whose 24 readings are named as the other when left out;" in told
+
+
+@pytest.mark.slow
+def test_few_readings_are_told_where_they_make_shares_and_strangers_a_guess(recordings):
+    for name in ("small", "large"):
+        *_, told = run("learn", name, recordings[name], "--frames", 3)
+    few = "fewer than 10 readings of large (3), small (3)"
+    assert f"these shares tell little yet: {few}, which leave it guessing" in told
+    assert few in run("objects")[2]
+    assert f"strangers may pass for known: {few}; learn more" in run(
+        "identify", recordings["strange"], "--frames", 1
+    )[2]  # fmt: skip
+    for name in ("small", "large"):
+        told = run("learn", name, recordings[name], "--frames", "3:")[2]
+    assert "fewer than" not in told + run("identify", recordings["small"], "--frames", 1)[2]
 
 
 @pytest.mark.slow
