@@ -18,6 +18,7 @@ from tactile_graph_classifiers.commands.shared import database_option
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.api.result import Result
+    from tactile_graph_classifiers.database.instrument import Instrument
     from tactile_graph_classifiers.distances.identity import Identity
     from tactile_graph_classifiers.measuring.measurements import Measurements
 
@@ -56,6 +57,7 @@ def identify(
     from tactile_graph.compiled import answered_meanwhile
     from tactile_graph.steps.injected import Report
     from tactile_graph_classifiers.database.store import ObjectDatabase
+    from tactile_graph_classifiers.measuring.reader import instrument_of
 
     if not recordings and source is None:
         raise UsageError("name the recordings to identify, or a --source")
@@ -66,12 +68,20 @@ def identify(
     report = Report()
     runner = opened.runner([node], seed)
     lines = _Together(opened, node, together) if together else _Lines(node)
+    other: Instrument | None = None
     with answered_meanwhile():
         for frame in span.of(opened.frames(seed, report)):
             lines.add(runner(frame))
+            instrument = instrument_of(frame)
+            if known.instrument is not None and not instrument.same_as(known.instrument):
+                other = instrument
     for line in report.few_troubles():
         say(line, err=True)
     lines.summarise()
+    if other is not None:
+        say(f"frames are of {other}, but the objects were learned on {known.instrument}: the"
+            " answers may mean nothing; learn them on this instrument, into another database",
+            err=True)  # fmt: skip
     if known.few:
         say(f"strangers may pass for known: {known.few}; learn more", err=True)
     if lines.n_failed:

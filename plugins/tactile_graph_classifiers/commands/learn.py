@@ -89,8 +89,16 @@ def learn(
     store = ObjectDatabase(database, timeout_s)
     plain_name = " ".join(name.split())
     presses = {plain_name: read.presses} if keep_presses else None
-    setting = Setting(first.names, first.quantity, opened.name)
+    instrument, *others = read.instruments
+    for other in others:
+        if not other.same_pitch(instrument):
+            raise UsageError(
+                f"these recordings are of {instrument} and of {other}; learn those of one"
+                " instrument into a database of their own"
+            )
+    setting = Setting(first.names, first.quantity, opened.name, instrument)
     twice = store.learn(setting, [lesson], presses=presses)
+    known = store.known()
     total = next(s for s in store.summaries() if s.name == plain_name)
     say(
         f"{database}: {total.name}{f' ({total.shape})' if total.shape else ''}: "
@@ -104,6 +112,10 @@ def learn(
             f"{again} begins anew",
             err=True,
         )
+    for other in read.instruments:
+        if known.instrument is not None and not other.same_as(known.instrument):
+            say(f"these are readings of {other}, the first in {database} of {known.instrument}:"
+                " do they compare?", err=True)  # fmt: skip
     tell_apart(store)
     if total.n_readings == len(read.rows):
         _say_namesakes(store.known(), plain_name)

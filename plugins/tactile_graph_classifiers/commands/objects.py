@@ -84,7 +84,8 @@ def _list(known: Known) -> None:
     ]
     unit = f", readings in {known.quantity}" if known.quantity else ""
     by = f", measured by {known.pipeline}" if known.pipeline else ""
-    print_table(f"{known.where}{by}{unit}", ["object", "shape ", "readings", *shown], rows)
+    on = f", of {known.instrument}" if known.instrument else ""
+    print_table(f"{known.where}{by}{unit}{on}", ["object", "shape ", "readings", *shown], rows)
     if known.choice is not None:
         say(f"{known.choice}.")
         if known.few:

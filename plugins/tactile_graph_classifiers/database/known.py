@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph_classifiers.database.choice import FEW, Choice
+from tactile_graph_classifiers.database.instrument import Instrument
 from tactile_graph_classifiers.database.statistics import Statistics
 
 Array = NDArray[np.float64]
@@ -59,6 +60,8 @@ class Known:
         Name of the pipeline that measured them.
     choice : Choice, optional
         How a discriminant of all these features tells them apart best, where that is known.
+    instrument : Instrument, optional
+        What they were recorded with, where that is known.
     """
 
     where: str
@@ -67,6 +70,7 @@ class Known:
     objects: tuple[KnownObject, ...]
     pipeline: str = ""
     choice: Choice | None = None
+    instrument: Instrument | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -136,7 +140,10 @@ class Known:
             )
             for o in self.objects
         )
-        return Known(self.where, tuple(features), self.quantity, objects, self.pipeline)
+        return Known(
+            self.where, tuple(features), self.quantity, objects, self.pipeline,
+            instrument=self.instrument,
+        )  # fmt: skip
 
     def same_readings(self, other: Known) -> bool:
         """Return whether both hold the same readings of the same objects.

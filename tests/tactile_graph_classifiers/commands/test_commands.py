@@ -5,9 +5,11 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from tactile_graph import Frame
 from tactile_graph.api.pipeline import load
 from tactile_graph.cli import cli
 from tactile_graph.cli.endings import ending
@@ -298,6 +300,28 @@ def test_readings_in_another_unit_end_identify_at_once_with_the_remedy(recording
         "takes gram at port 'features', got a frame of raw; tactile-objects.sqlite: the objects"
         " were learned in gram; learn them from recordings like these" in told
     )
+
+
+@pytest.mark.slow
+def test_another_grid_or_pitch_than_was_learned_on_is_told(recordings):
+    learned(recordings)
+    assert ", of 16 x 16 elements 1.3 x 1.3 cm apart" in answer("objects")[1]
+    for name, columns, pitch_cm in (("fine", 16, 0.5), ("wide", 20, 1.3)):
+        values = np.zeros((16, columns))
+        values[4:9, 4:9] = 500.0
+        frames = [Frame.of(values, pitch_cm, quantity="gram", index=k) for k in range(4)]
+        write_npz(Path(f"{name}.npz"), frames)
+    told = run("identify", "fine.npz")[2]
+    assert "frames are of 16 x 16 elements 0.5 x 0.5 cm apart, but the objects were learned" in told
+    code, told = call("learn", "x", "fine.npz")
+    assert code == 2
+    assert "those of another instrument go into a database of their own" in told
+    code, told = call("learn", "x", "fine.npz", "wide.npz", "--database", "b.sqlite")
+    assert (code, Path("b.sqlite").exists()) == (2, False)
+    assert "learn those of one instrument" in told
+    code, told = call("learn", "x", "wide.npz")
+    assert code == 0
+    assert "these are readings of 16 x 20 elements" in told
 
 
 @pytest.mark.slow
