@@ -14,7 +14,7 @@ from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.many.options import place_for, workers_options
 from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
-from tactile_graph_classifiers.commands.shared import database_option, tell_apart
+from tactile_graph_classifiers.commands.shared import database_option, tell_apart, tell_assumed_pad
 from tactile_graph_classifiers.measuring.shapes import SHAPES
 
 if TYPE_CHECKING:
@@ -116,6 +116,8 @@ def learn(
         if known.instrument is not None and not other.same_as(known.instrument):
             say(f"these are readings of {other}, the first in {database} of {known.instrument}:"
                 " do they compare?", err=True)  # fmt: skip
+    if read.by_law:
+        tell_assumed_pad(opened, settings)
     tell_apart(store)
     if total.n_readings == len(read.rows):
         _say_namesakes(store.known(), plain_name)

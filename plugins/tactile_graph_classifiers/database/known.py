@@ -160,9 +160,11 @@ class Known:
     @property
     def remedy(self) -> str:
         """What to do about readings in another unit."""
+        raw = ", or take these for bare readings too (--with quantity=raw)"
         return (
             f"the objects were learned in {self.quantity}; learn them from recordings like these,"
             " into another database, and name that as the step's database"
+            f"{raw if self.quantity == 'raw' else ''}"
         )
 
     def measured(self, quantity: str) -> None:

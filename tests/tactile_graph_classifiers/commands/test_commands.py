@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -300,6 +301,29 @@ def test_readings_in_another_unit_end_identify_at_once_with_the_remedy(recording
         "takes gram at port 'features', got a frame of raw; tactile-objects.sqlite: the objects"
         " were learned in gram; learn them from recordings like these" in told
     )
+
+
+@pytest.mark.slow
+def test_volts_are_taken_for_a_pad_nobody_named_only_with_a_word_and_stay_as_they_are_if_told(
+    recordings,
+):
+    for name in ("small", "large"):
+        frames = load("features").with_source("recording", path=str(recordings[name])).frames()
+        write_npz(Path(f"{name}.npz"), [replace(frame, truth=None) for frame in frames])
+    law = "the volts were taken for those of pad 'thesis', by its circuit and law"
+    assert law in run("learn", "small", "small.npz")[2]
+    assert law in run("identify", "small.npz", "--frames", 1)[2]
+    named = ("--set", "siemens.pad=thesis", "--set", "grams.pad=thesis")
+    assert law not in run("learn", "small", "small.npz", *named)[2]
+    assert law not in run("learn", "small", recordings["small"])[2]  # simulated, on that pad
+    bare = ("--database", "bare.sqlite", "--with", "quantity=raw")
+    for name in ("small", "large"):
+        code, _, told = run("learn", name, f"{name}.npz", *bare)
+        assert (code, law in told) == (0, False)
+    assert "readings in raw" in answer("objects", *bare[:2])[1]
+    assert answer("identify", "large.npz", *bare)[1].splitlines()[-1] == "large: 12"
+    told = " ".join(run("identify", "large.npz", *bare[:2])[2].split())
+    assert "or take these for bare readings too (--with quantity=raw)" in told
 
 
 @pytest.mark.slow
