@@ -188,6 +188,14 @@ def test_export_and_import_move_objects_between_databases(recordings):
     assert code == 2
     assert "there already: large, small; forget them first" in text
     assert call("objects", "--export", "nowhere/o.yaml")[0] == 2
+    edited = Path("o.yaml").read_text(encoding="utf-8") + "# edited\n"
+    Path("o.yaml").write_text(edited, encoding="utf-8")
+    code, text = call("objects", "--export", "o.yaml")
+    assert code == 2
+    assert "--export o.yaml: is there already; name another file, or write over it with" in text
+    assert Path("o.yaml").read_text(encoding="utf-8") == edited
+    assert call("objects", "--export", "o.yaml", "--overwrite")[0] == 0
+    assert "edited" not in Path("o.yaml").read_text(encoding="utf-8")
 
 
 def test_frames_that_fail_or_are_empty_are_left_out_and_counted(tmp_path, recordings):
