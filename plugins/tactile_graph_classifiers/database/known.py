@@ -162,7 +162,8 @@ class Known:
         """What to do about readings in another unit."""
         raw = ", or take these for bare readings too (--with quantity=raw)"
         return (
-            f"the objects were learned in {self.quantity}; learn them from recordings like these,"
+            f"the objects were learned in {self.quantity}; learn them from recordings like these"
+            " (tactile-graph learn),"
             " into another database, and name that as the step's database"
             f"{raw if self.quantity == 'raw' else ''}"
         )
