@@ -90,7 +90,10 @@ def identify(
             " answers may mean nothing; learn them on this instrument, into another database",
             err=True)  # fmt: skip
     if known.few:
-        say(f"strangers may pass for known: {known.few}; learn more", err=True)
+        say(
+            f"strangers may pass for known, and margins say little: {known.few}; learn more",
+            err=True,
+        )
     if lines.n_failed:
         click.get_current_context().exit(SOME_FAILED)
 

@@ -112,7 +112,7 @@ def test_few_readings_are_told_where_they_make_shares_and_strangers_a_guess(reco
     few = "fewer than 10 readings of large (3), small (3)"
     assert f"these shares tell little yet: {few}, which leave it guessing" in told
     assert few in run("objects")[2]
-    assert f"strangers may pass for known: {few}; learn more" in run(
+    assert f"strangers may pass for known, and margins say little: {few}; learn more" in run(
         "identify", recordings["strange"], "--frames", 1
     )[2]  # fmt: skip
     for name in ("small", "large"):
