@@ -259,7 +259,7 @@ def name_left_out(examples: Examples, manner: Manner, n_presses: int = 1) -> Nam
 
 
 def _means_of_presses(coordinates: Array, labels: Labels, n_presses: int) -> tuple[Array, Labels]:
-    """Return means of every so many successive readings of an object, (m, T), and whose they are."""
+    """Return means of every so many successive readings of an object, (m, T), and whose."""
     means, of = [], []
     for k in np.unique(labels):
         own = coordinates[labels == k]

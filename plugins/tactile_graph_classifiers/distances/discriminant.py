@@ -50,8 +50,8 @@ class CanonicalDiscriminant:
     pipeline is loaded for exports and for features chosen here. The distance is that of
     Mahalanobis, ``margin`` one minus the likelihood of the runner-up over that of the nearest,
     both to a power at which the names of readings left out are likeliest: of the names that stand
-    at a margin m, a share of 1 / (2 - m) or so is right. What is accepted is the quantile of readings left out
-    (split conformal prediction).
+    at a margin m, a share of 1 / (2 - m) or so is right. What is accepted is the quantile of
+    readings left out (split conformal prediction).
     """
 
     stateless = True
