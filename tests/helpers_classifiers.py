@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 
 from tactile_graph import Image, Mask
+from tactile_graph_classifiers.database.instrument import Instrument
 from tactile_graph_classifiers.database.rows import Lesson, Setting
 from tactile_graph_classifiers.database.text import FORMAT, VERSION
 from tactile_graph_classifiers.measuring.measurements import Measurements
 
 PAIR = ("weight", "area_cm2")
 SETTING = Setting(PAIR, "gram", "features")
+MAT = Instrument(16, 16, 1.3, 1.3)
 
 
 def reading(weight: float, area: float, quantity: str = "gram") -> Measurements:

@@ -73,7 +73,7 @@ def recording(
     origin_cm : (float, float), optional
         Top left corner of the first cell in pad coordinates; goes before the file's own.
     quantity : str, optional
-        What the values mean, where the file cannot tell.
+        What the values mean, where the file cannot tell; ``raw`` takes what it says off them.
     sensor : str
         Only frames of sensors whose name contains this; in an ``.npz`` the name of the array, in a
         table whose columns or lines are those of several sensors the one that is read. Several

@@ -71,6 +71,26 @@ def check_targets(
             _refuse(option, name, one)
 
 
+def refuse_existing(targets: Iterable[tuple[str, Name | None]]) -> None:
+    """Refuse to write over a file that is there: of files that people edit, and may have edited.
+
+    Parameters
+    ----------
+    targets : iterable of (str, path)
+        As of `check_targets`, of a command with an option ``--overwrite`` that was not given.
+
+    Raises
+    ------
+    UsageError
+    """
+    for option, name in targets:
+        if name not in (None, STDOUT) and is_plain(str(name)) and Path(str(name)).exists():
+            raise UsageError(
+                f"{option} {name}: is there already; name another file, or write over it with"
+                " --overwrite"
+            )
+
+
 def _refuse(option: str, name: str, one: _Input) -> None:
     same = _same(name, one.path)
     if same or (one.with_all_in_it and _is_in(name, one.path)):

@@ -181,8 +181,11 @@ def test_settings_say_what_the_file_cannot(tmp_path: Path) -> None:
 
 
 def test_a_quantity_against_the_files_own_is_refused(tmp_path: Path) -> None:
+    path = write(tmp_path, FORMATS["tekscan"])
     with pytest.raises(DataError, match="its values are kilopascal, the settings say volt"):
-        frames_of(write(tmp_path, FORMATS["tekscan"]), quantity="volt")
+        frames_of(path, quantity="volt")
+    frames, _ = frames_of(path, quantity="raw")  # which claims nothing
+    assert frames[0].image.quantity == "raw"
 
 
 def test_one_sensor_of_several_can_be_chosen(tmp_path: Path) -> None:

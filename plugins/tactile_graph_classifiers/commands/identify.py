@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,11 +14,12 @@ from tactile_graph.cli.arguments import Span, open_pipeline, parse_span, source_
 from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
-from tactile_graph_classifiers.commands.shared import database_option
+from tactile_graph_classifiers.commands.shared import database_option, tell_assumed_pad
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.api.result import Result
+    from tactile_graph_classifiers.database.instrument import Instrument
     from tactile_graph_classifiers.distances.identity import Identity
     from tactile_graph_classifiers.measuring.measurements import Measurements
 
@@ -53,25 +55,45 @@ def identify(
     presses of an object, named --together, tell what one does not: strangers above all. Programs
     ask 'tactile-graph run identify-any -o -' for lines.
     """
+    from tactile_graph.api.pipeline import load
     from tactile_graph.compiled import answered_meanwhile
     from tactile_graph.steps.injected import Report
     from tactile_graph_classifiers.database.store import ObjectDatabase
+    from tactile_graph_classifiers.measuring.reader import instrument_of, is_by_law
 
     if not recordings and source is None:
         raise UsageError("name the recordings to identify, or a --source")
-    ObjectDatabase(database, timeout_s).summaries()  # what is wrong with it, before the pipeline
+    known = ObjectDatabase(database, timeout_s).known()  # what is wrong with it comes first
+    node = _identifying(load(pipeline), only)
+    # With the source and not after it: what the sample knows may be in another unit than both.
+    settings = (*settings, f"{node}.database={json.dumps(str(database))}")
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
-    node = _identifying(opened, only)
-    opened = opened.with_settings({f"{node}.database": str(database)})
     report = Report()
     runner = opened.runner([node], seed)
     lines = _Together(opened, node, together) if together else _Lines(node)
+    other: Instrument | None = None
+    by_law = False
     with answered_meanwhile():
         for frame in span.of(opened.frames(seed, report)):
             lines.add(runner(frame))
+            by_law |= is_by_law(frame, known.quantity)
+            instrument = instrument_of(frame)
+            if known.instrument is not None and not instrument.same_as(known.instrument):
+                other = instrument
     for line in report.few_troubles():
         say(line, err=True)
     lines.summarise()
+    if by_law:
+        tell_assumed_pad(opened, settings)
+    if other is not None:
+        say(f"frames are of {other}, but the objects were learned on {known.instrument}: the"
+            " answers may mean nothing; learn them on this instrument, into another database",
+            err=True)  # fmt: skip
+    if known.few:
+        say(
+            f"strangers may pass for known, and margins say little: {known.few}; learn more",
+            err=True,
+        )
     if lines.n_failed:
         click.get_current_context().exit(SOME_FAILED)
 

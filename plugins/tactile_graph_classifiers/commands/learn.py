@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+import numpy as np
 
 from tactile_graph.cli.arguments import Span, open_pipeline, parse_span, source_options
 from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.many.options import place_for, workers_options
 from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
-from tactile_graph_classifiers.commands.shared import database_option, tell_apart
+from tactile_graph_classifiers.commands.shared import database_option, tell_apart, tell_assumed_pad
 from tactile_graph_classifiers.measuring.shapes import SHAPES
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from tactile_graph.many import Place
     from tactile_graph.pipeline.wiring import Ref
     from tactile_graph.steps.injected import Report
+    from tactile_graph_classifiers.database.known import Known
     from tactile_graph_classifiers.measuring.reader import Given, Readings
 
 
@@ -87,8 +89,16 @@ def learn(
     store = ObjectDatabase(database, timeout_s)
     plain_name = " ".join(name.split())
     presses = {plain_name: read.presses} if keep_presses else None
-    setting = Setting(first.names, first.quantity, opened.name)
+    instrument, *others = read.instruments
+    for other in others:
+        if not other.same_pitch(instrument):
+            raise UsageError(
+                f"these recordings are of {instrument} and of {other}; learn those of one"
+                " instrument into a database of their own"
+            )
+    setting = Setting(first.names, first.quantity, opened.name, instrument)
     twice = store.learn(setting, [lesson], presses=presses)
+    known = store.known()
     total = next(s for s in store.summaries() if s.name == plain_name)
     say(
         f"{database}: {total.name}{f' ({total.shape})' if total.shape else ''}: "
@@ -97,17 +107,56 @@ def learn(
     if twice:
         again = f"tactile-graph forget {shlex.quote(plain_name)}"
         say(
-            f"{twice} of these were learned before, from the same frames, and count twice now; "
+            f"{twice} of these were learned before, from the same frames or a copy of them, and "
+            f"count twice now; "
             f"{again} begins anew",
             err=True,
         )
+    for other in read.instruments:
+        if known.instrument is not None and not other.same_as(known.instrument):
+            say(f"these are readings of {other}, the first in {database} of {known.instrument}:"
+                " do they compare?", err=True)  # fmt: skip
+    if read.by_law:
+        tell_assumed_pad(opened, settings)
     tell_apart(store)
+    if total.n_readings == len(read.rows):
+        _say_namesakes(store.known(), plain_name)
     for what, n in read.left_out.items():
         say(f"left out: {n} frames: {what}", err=True)
     for line in report.few_troubles():
         say(line, err=True)
     if read.n_failed:
         click.get_current_context().exit(SOME_FAILED)
+
+
+def _say_namesakes(known: Known, name: str) -> None:
+    """Say of a new object which others differ from it by case, spaces and signs alone."""
+    for other in known.names:
+        if other != name and _letters(other) == _letters(name):
+            again = f"tactile-graph forget {shlex.quote(name)}"
+            say(f"{name!r} is a new object beside {other!r}{_alike(known, name, other)}; did you"
+                f" mean {other!r}? Then {again}, and learn it as that", err=True)  # fmt: skip
+
+
+def _letters(name: str) -> str:
+    return "".join(c for c in name.casefold() if c.isalnum())
+
+
+def _alike(known: Known, name: str, other: str) -> str:
+    """Return how often readings of two objects are taken for the other when left out, in words."""
+    from tactile_graph_classifiers.distances.choosing import Examples, left_out_names
+
+    if known.choice is None:
+        return ""
+    both = [known.names.index(one) for one in (name, other)]
+    true, named = left_out_names(Examples.of(known), known.choice.manner)
+    of_both = np.isin(true, both)
+    n, n_mixed = int(of_both.sum()), int((np.isin(named, both) & of_both & (named != true)).sum())
+    if not n:
+        return ""
+    # Of two that are the same, half are, but for chance.
+    same = ", so they look the same" if 4 * n_mixed >= n and not known.few else ""
+    return f", {n_mixed} of whose {n} readings are named as the other when left out{same}"
 
 
 def _read(

@@ -9,9 +9,14 @@ import click
 import numpy as np
 
 from tactile_graph.cli.say import hand_over, say
-from tactile_graph.cli.targets import check_targets
+from tactile_graph.cli.targets import check_targets, refuse_existing
 from tactile_graph.errors import UsageError
-from tactile_graph_classifiers.commands.shared import database_option, print_table, tell_apart
+from tactile_graph_classifiers.commands.shared import (
+    database_option,
+    print_table,
+    tell_apart,
+    tell_few,
+)
 
 if TYPE_CHECKING:
     from tactile_graph_classifiers.database.known import Known, KnownObject
@@ -24,10 +29,16 @@ LISTED = ("weight", "area_cm2")
 @database_option
 @click.option("--export", "exported", metavar="FILE",
               help="Write everything as YAML to FILE, or - for stdout.")  # fmt: skip
+@click.option("--overwrite", is_flag=True, help="Write the export over a file that is there.")
 @click.option("--import", "imported", type=click.Path(path_type=Path), metavar="FILE",
               help="Add the objects of an export, all or none.")  # fmt: skip
 def objects(
-    name: str | None, database: Path, timeout_s: float, exported: str | None, imported: Path | None
+    name: str | None,
+    database: Path,
+    timeout_s: float,
+    exported: str | None,
+    overwrite: bool,
+    imported: Path | None,
 ) -> None:
     """List the known objects, or mean and deviation of each feature of NAME."""
     from tactile_graph_classifiers.database.store import ObjectDatabase
@@ -35,6 +46,8 @@ def objects(
     if (name is not None) + (exported is not None) + (imported is not None) > 1:
         raise UsageError("give one of NAME, --export and --import")
     check_targets([("--export", exported)])
+    if not overwrite:
+        refuse_existing([("--export", exported)])
     store = ObjectDatabase(database, timeout_s)
     if imported is not None:
         from tactile_graph_classifiers.database.text import read_export
@@ -79,9 +92,12 @@ def _list(known: Known) -> None:
     ]
     unit = f", readings in {known.quantity}" if known.quantity else ""
     by = f", measured by {known.pipeline}" if known.pipeline else ""
-    print_table(f"{known.where}{by}{unit}", ["object", "shape ", "readings", *shown], rows)
+    on = f", of {known.instrument}" if known.instrument else ""
+    print_table(f"{known.where}{by}{unit}{on}", ["object", "shape ", "readings", *shown], rows)
     if known.choice is not None:
         say(f"{known.choice}.")
+        if known.few:
+            tell_few(known)
 
 
 def _spread(known: Known, it: KnownObject, feature: str) -> str:

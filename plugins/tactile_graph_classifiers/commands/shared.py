@@ -12,6 +12,8 @@ from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
+    from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph_classifiers.database.known import Known
     from tactile_graph_classifiers.database.store import ObjectDatabase
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -57,6 +59,43 @@ def tell_apart(store: ObjectDatabase) -> None:
     choice = choose(Examples.of(known))
     store.keep(choice, known)
     say(f"{store.path}: {choice}")
+    if known.few:
+        tell_few(known)
+
+
+def tell_few(known: Known) -> None:
+    """Say that how well objects are told apart is not known by few readings.
+
+    Parameters
+    ----------
+    known : Known
+        Of which some object has few.
+    """
+    say(f"these shares tell little yet: {known.few}, which leave it guessing how much one object"
+        " varies; learn more", err=True)  # fmt: skip
+
+
+def tell_assumed_pad(pipeline: Pipeline, settings: Sequence[str]) -> None:
+    """Say that volts were made another quantity by a pad that nobody named, if none was.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    settings : sequence of str
+        What ``--set`` says.
+    """
+    assumed, named = {}, any(".pad=" in setting for setting in settings)
+    for name, node in pipeline.nodes.items():
+        for one in node.signature.settings if node.signature is not None else ():
+            if one.name == "pad":
+                assumed[name] = one.default
+                named |= node.settings.get("pad") != one.default
+    pad = next((str(default) for default in assumed.values() if default), "")
+    if pad and not named:
+        told = " ".join(f"--set {name}.pad=FILE" for name in assumed)
+        say(f"the volts were taken for those of pad {pad!r}, by its circuit and law; those of"
+            f" another pad give no true weights: name it with {told}, or keep them as they are with"
+            " --with quantity=raw, in learn and identify alike", err=True)  # fmt: skip
 
 
 def print_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

@@ -7,6 +7,9 @@ from typing import NamedTuple
 CONFIDENCE = 0.95
 """Share of known objects' readings that is to be accepted, unless told."""
 
+FEW = 10
+"""Readings of an object below which nothing says how much it varies."""
+
 
 class Manner(NamedTuple):
     """How a discriminant is made.

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
-from tactile_graph_classifiers.database.choice import Choice
+from tactile_graph_classifiers.database.choice import FEW, Choice
+from tactile_graph_classifiers.database.instrument import Instrument
 from tactile_graph_classifiers.database.statistics import Statistics
 
 Array = NDArray[np.float64]
@@ -59,6 +60,8 @@ class Known:
         Name of the pipeline that measured them.
     choice : Choice, optional
         How a discriminant of all these features tells them apart best, where that is known.
+    instrument : Instrument, optional
+        What they were recorded with, where that is known.
     """
 
     where: str
@@ -67,6 +70,7 @@ class Known:
     objects: tuple[KnownObject, ...]
     pipeline: str = ""
     choice: Choice | None = None
+    instrument: Instrument | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -92,6 +96,12 @@ class Known:
     def covariances(self) -> Array:
         """Unbiased covariance of each object, shape (K, F, F)."""
         return np.array([o.statistics.covariance for o in self.objects])
+
+    @property
+    def few(self) -> str:
+        """What to say of objects with fewer than `FEW` readings; empty where there are none."""
+        few = [f"{o.name} ({o.statistics.n})" for o in self.objects if o.statistics.n < FEW]
+        return f"fewer than {FEW} readings of {one_of(few, 6)}" if few else ""
 
     def chosen(self, features: Sequence[str] | None) -> Known:
         """Return the objects with these features alone.
@@ -130,7 +140,10 @@ class Known:
             )
             for o in self.objects
         )
-        return Known(self.where, tuple(features), self.quantity, objects, self.pipeline)
+        return Known(
+            self.where, tuple(features), self.quantity, objects, self.pipeline,
+            instrument=self.instrument,
+        )  # fmt: skip
 
     def same_readings(self, other: Known) -> bool:
         """Return whether both hold the same readings of the same objects.
@@ -147,9 +160,12 @@ class Known:
     @property
     def remedy(self) -> str:
         """What to do about readings in another unit."""
+        raw = ", or take these for bare readings too (--with quantity=raw)"
         return (
-            f"the objects were learned in {self.quantity}; learn them from recordings like these,"
+            f"the objects were learned in {self.quantity}; learn them from recordings like these"
+            " (tactile-graph learn),"
             " into another database, and name that as the step's database"
+            f"{raw if self.quantity == 'raw' else ''}"
         )
 
     def measured(self, quantity: str) -> None:

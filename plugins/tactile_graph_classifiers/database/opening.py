@@ -99,4 +99,7 @@ def _known(setting: Any, lessons: Any, where: str) -> Known:
         KnownObject(x.name, x.shape, x.readings, Statistics.of(x.readings), tuple(x.sources))
         for x in lessons
     )
-    return Known(where, setting.features, setting.quantity, objects, setting.pipeline)
+    return Known(
+        where, setting.features, setting.quantity, objects, setting.pipeline,
+        instrument=setting.instrument,
+    )  # fmt: skip

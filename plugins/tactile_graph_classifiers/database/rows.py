@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph_classifiers.database.choice import Choice, Manner
+from tactile_graph_classifiers.database.instrument import Instrument
 from tactile_graph_classifiers.database.known import KnownObject
+from tactile_graph_classifiers.database.schema import INSTRUMENT
 from tactile_graph_classifiers.database.seal import seal, seal_of_object
 from tactile_graph_classifiers.database.statistics import Statistics
 
@@ -46,11 +48,14 @@ class Setting(NamedTuple):
     features : tuple of str
     quantity : str
     pipeline : str
+    instrument : Instrument, optional
+        None where nobody said, as in databases of earlier versions.
     """
 
     features: tuple[str, ...]
     quantity: str
     pipeline: str = ""
+    instrument: Instrument | None = None
 
 
 class StoredObject(NamedTuple):
@@ -115,7 +120,8 @@ def contents(connection: sqlite3.Connection, where: str) -> Contents:
     if len(about) != 1 or [k for k, _ in features] != list(range(len(features))):
         raise damaged(where, "rows are missing or there are too many")
     quantity, pipeline, sealed = about[0]
-    setting = Setting(tuple(name for _, name in features), quantity, pipeline)
+    names = tuple(name for _, name in features)
+    setting = Setting(names, quantity, pipeline, _instrument(connection, where))
     objects = tuple(_object(connection, row, len(features), where) for row in rows)
     found = Contents(setting, objects, _choice(connection, where))
     if _whole_seal(found, [row[-1] for row in rows]) != sealed:
@@ -191,6 +197,19 @@ def _choice(connection: sqlite3.Connection, where: str) -> Choice | None:
     if len(rows) > 1:
         raise damaged(where, "there are two choices")
     return Choice(Manner(*rows[0][:4]), *rows[0][4:]) if rows else None
+
+
+def _instrument(connection: sqlite3.Connection, where: str) -> Instrument | None:
+    query = "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name = 'instrument'"
+    if connection.execute(query).fetchone() == (0,):
+        return None
+    rows = connection.execute(
+        "SELECT rows, columns, pitch_x_cm, pitch_y_cm, seal FROM instrument"
+    ).fetchall()
+    _typed(rows, (int, int, float, float, str), where)
+    if len(rows) != 1 or seal(rows[0][:-1]) != rows[0][-1]:
+        raise damaged(where, "its instrument is not the one that was learned on")
+    return Instrument(*rows[0][:-1])
 
 
 def _whole_seal(found: Contents, seals: Sequence[str]) -> str:
@@ -277,3 +296,7 @@ def settle(connection: sqlite3.Connection, setting: Setting, choice: Choice | No
         "INSERT OR REPLACE INTO about VALUES (1, ?, ?, ?)",
         (setting.quantity, setting.pipeline, sealed),
     )
+    if setting.instrument is not None:
+        connection.execute(INSTRUMENT)
+        row = (*setting.instrument, seal(setting.instrument))
+        connection.execute("INSERT OR REPLACE INTO instrument VALUES (1, ?, ?, ?, ?, ?)", row)

@@ -66,3 +66,14 @@ CREATE TABLE scatters (              -- second order: covariance = scatter / (n_
     PRIMARY KEY (object_id, feature_a, feature_b)
 ) WITHOUT ROWID
 """
+
+INSTRUMENT = f"""
+CREATE TABLE IF NOT EXISTS instrument (     -- made by the first lesson that says it
+    id INTEGER PRIMARY KEY CHECK (id = 1),
+    rows INTEGER NOT NULL CHECK (rows > 0),
+    columns INTEGER NOT NULL CHECK (columns > 0),
+    pitch_x_cm {_REAL.format("pitch_x_cm")} CHECK (pitch_x_cm > 0),
+    pitch_y_cm {_REAL.format("pitch_y_cm")} CHECK (pitch_y_cm > 0),
+    seal {_SEAL.format("seal")}
+)
+"""

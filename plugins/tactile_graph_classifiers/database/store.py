@@ -79,13 +79,13 @@ class ObjectDatabase:
         Returns
         -------
         int
-            How many of them were there before, of the same source and to the last digit.
+            How many of them their object had before, to the last digit, whatever file they are of.
 
         Raises
         ------
         UsageError
             If a name cannot be one, an object is there already, or the readings measure other
-            features or another quantity than those in the database.
+            features or another quantity than those in the database, or of another pitch.
         DataError
             If the file cannot be written or is no object database.
         """
@@ -97,7 +97,8 @@ class ObjectDatabase:
             if new:
                 self._none_there([lesson.name for lesson in checked], objects)
             if there.setting.features:
-                setting = there.setting
+                instrument = there.setting.instrument or setting.instrument
+                setting = there.setting._replace(instrument=instrument)
             settle(connection, setting, None)  # features first: values refer to them
             n_again = sum(_again(lesson, objects.get(lesson.name)) for lesson in checked)
             for lesson in checked:
@@ -187,6 +188,13 @@ class ObjectDatabase:
                     " database of their own"
                 )
 
+        was, new = there.instrument, setting.instrument
+        if was is not None and new is not None and not was.same_pitch(new):
+            raise UsageError(
+                f"{self.path}: its readings are of {was}, the new ones of {new}; those of another"
+                " instrument go into a database of their own"
+            )
+
     def _none_there(self, names: Sequence[str], there: Container[str]) -> None:
         clash = [name for name in names if name in there]
         if clash:
@@ -243,16 +251,18 @@ class ObjectDatabase:
 
     def _known(self, found: Contents) -> Known:
         setting, objects = found.setting, tuple(it.known for it in found.objects)
-        return Known(str(self.path), *setting[:2], objects, setting.pipeline, found.choice)
+        return Known(
+            str(self.path), *setting[:2], objects, setting.pipeline, found.choice,
+            setting.instrument,
+        )  # fmt: skip
 
 
 def _again(lesson: Lesson, old: KnownObject | None) -> int:
-    """Return how many readings of a lesson an object has already, of the same source."""
+    """Return how many readings of a lesson an object has already, to the last digit."""
     if old is None:
         return 0
-    there = {(of, *values) for of, values in zip(old.sources, old.readings.tolist(), strict=True)}
-    given = zip(lesson.sources, lesson.readings, strict=True)
-    return sum((source, *values) in there for source, values in given)
+    there = set(map(tuple, old.readings.tolist()))
+    return sum(tuple(values) in there for values in lesson.readings.tolist())
 
 
 def _checked(lesson: Lesson, setting: Setting) -> Lesson:

@@ -11,6 +11,7 @@ import numpy as np
 import yaml
 
 from tactile_graph.errors import DataError, did_you_mean, shown
+from tactile_graph_classifiers.database.instrument import Instrument
 from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.database.rows import Lesson, Setting
 
@@ -32,7 +33,9 @@ _Dumper.add_implicit_resolver(
     re.compile(r"[yYnN]$|0o[0-7]+$|[-+]?(?:\.[0-9]+|[0-9]+\.?[0-9]*)(?:[eE][-+]?[0-9]+)?$"),
     list("yYnN-+.0123456789"),
 )
-_KEYS = {"format", "version", "about", "quantity", "pipeline", "features", "objects"}
+_KEYS = {
+    "format", "version", "about", "quantity", "pipeline", "instrument", "features", "objects",
+}  # fmt: skip
 _OBJECT_KEYS = {"name", "shape", "readings", "sources"}
 
 
@@ -51,6 +54,7 @@ def to_text(known: Known, about: str = "") -> str:
         **({"about": about} if about else {}),
         "quantity": known.quantity,
         "pipeline": known.pipeline,
+        **({"instrument": known.instrument._asdict()} if known.instrument else {}),
         "features": list(known.features),
         "objects": [
             {
@@ -132,10 +136,29 @@ def from_data(data: Any, where: str) -> tuple[Setting, list[Lesson]]:
     for name in names:
         if names.count(name) > 1:
             raise DataError(where, f"two objects are named {name!r}")
-    return (
-        Setting(tuple(features), str(data.get("quantity", "")), str(data.get("pipeline", ""))),
-        lessons,
+    quantity, pipeline = (str(data.get(key, "")) for key in ("quantity", "pipeline"))
+    instrument = _instrument(data["instrument"], where) if "instrument" in data else None
+    return Setting(tuple(features), quantity, pipeline, instrument), lessons
+
+
+def _instrument(data: Any, where: str) -> Instrument:
+    """Return the grid and pitch of an export."""
+    fields = Instrument._fields
+    if isinstance(data, Mapping) and set(data) == set(fields):
+        rows, columns, x, y = (data[key] for key in fields)
+        whole = isinstance(rows, int) and isinstance(columns, int)
+        if whole and all(_above_0(n) for n in (rows, columns, x, y)):
+            return Instrument(rows, columns, float(x), float(y))
+    raise DataError(
+        where,
+        f"instrument: must be whole numbers rows and columns, and numbers {fields[2]} and"
+        f" {fields[3]}, all above 0, got {shown(data)}",
     )
+
+
+def _above_0(value: Any) -> bool:
+    good = isinstance(value, int | float) and not isinstance(value, bool)
+    return good and 0.0 < value < 1e9
 
 
 def _only(data: Mapping[str, Any], allowed: set[str], where: str, what: str) -> None:

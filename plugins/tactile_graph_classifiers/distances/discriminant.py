@@ -13,7 +13,7 @@ from annotated_types import Gt, Lt, MinLen
 
 from tactile_graph.errors import DataError
 from tactile_graph_classifiers.database.choice import CONFIDENCE
-from tactile_graph_classifiers.distances.choosing import Examples, choose_once, left_out_squares
+from tactile_graph_classifiers.distances.choosing import Examples, choose_once, name_left_out
 from tactile_graph_classifiers.distances.classifier import Lookup
 from tactile_graph_classifiers.distances.discriminant_model import Learned
 from tactile_graph_classifiers.distances.identity import UNKNOWN, Identity
@@ -48,8 +48,10 @@ class CanonicalDiscriminant:
     doi:10.1080/01621459.1989.10478752). How far, and in how many variates, is chosen by leaving
     readings and whole objects out: when they are learned, and kept in the database; when the
     pipeline is loaded for exports and for features chosen here. The distance is that of
-    Mahalanobis, ``margin`` one minus the likelihood of the runner-up over that of the nearest.
-    What is accepted is the quantile of readings left out (split conformal prediction).
+    Mahalanobis, ``margin`` one minus the likelihood of the runner-up over that of the nearest,
+    both to a power at which the names of readings left out are likeliest: of the names that stand
+    at a margin m, a share of 1 / (2 - m) or so is right. What is accepted is the quantile of
+    readings left out (split conformal prediction).
     """
 
     stateless = True
@@ -72,9 +74,9 @@ class CanonicalDiscriminant:
         self._examples, self._manner = examples, manner
         self._confidence = confidence if reject else None
         self._most_presses = examples.most_presses()
-        self._limits: dict[int, float | None] = {}
+        self._accepted: dict[int, tuple[float | None, float]] = {}
         self._median = 0.0
-        self._limit(1)
+        self._by_left_out(1)
 
     def __call__(self, features: Measurements) -> Identity:
         """Return the likeliest object, the runner-up and their margin.
@@ -113,28 +115,30 @@ class CanonicalDiscriminant:
         squares = [float(scores.at(order[i : i + 1], beyond)[0]) for i in range(len(order))]
         if not math.isfinite(squares[0]):
             raise DataError("features", "they are too far from every known object for a number")
-        behind = float(np.ptp(scores.unlikeliness[0, order]))
-        found = self._identity(order.tolist(), squares, self._limit(n_presses), behind)
+        limit, temperature = self._by_left_out(n_presses)
+        behind = float(np.ptp(scores.unlikeliness[0, order])) / temperature
+        found = self._identity(order.tolist(), squares, limit, behind)
         return replace(found, n_presses=len(presses))
 
-    def _limit(self, n_presses: int) -> float | None:
-        """Return the largest squared distance at which so many presses are accepted.
+    def _by_left_out(self, n_presses: int) -> tuple[float | None, float]:
+        """Return the largest squared distance at which so many presses are accepted, and how hot.
 
         A mean of presses has no longer tail than one press has. Where few were left out together
         to tell, one odd press among them must not widen the limit: it is at most that of one
-        press, over the median of one press times theirs.
+        press, over the median of one press times theirs. Nor are they ever surer than one press.
         """
-        if n_presses not in self._limits:
-            limit = None
+        if n_presses not in self._accepted:
+            named = name_left_out(self._examples, self._manner, n_presses)
+            squares, limit, temperature = named.squares, None, named.temperature()
+            one, at_least = self._accepted.get(1, (None, 1.0))
             if self._confidence is not None:
-                squares = left_out_squares(self._examples, self._manner, n_presses)
                 limit = largest_accepted(squares, self._confidence)
                 if n_presses == 1:
                     self._median = float(np.median(squares)) if squares.size else 0.0
-                elif self._median > 0.0 and (one := self._limits[1]) is not None:
+                elif self._median > 0.0 and one is not None:
                     limit = min(limit, one * float(np.median(squares)) / self._median)
-            self._limits[n_presses] = limit
-        return self._limits[n_presses]
+            self._accepted[n_presses] = limit, max(temperature, at_least)
+        return self._accepted[n_presses]
 
     def _identity(
         self, order: list[int], squares: list[float], limit: float | None, behind: float

@@ -34,7 +34,8 @@ class Identity:
         None where only one object is known.
     margin : float
         0 for a tie of the two, 1 if nothing else comes into question: 1 - distance /
-        runner_up_distance, or of a discriminant 1 - likelihood of the second / of the first.
+        runner_up_distance, or of a discriminant 1 - likelihood of the second / of the first, as
+        sure as readings left out allow.
     n_presses : int
         How many readings of the object the answer rests on.
     """

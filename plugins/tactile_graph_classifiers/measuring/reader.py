@@ -16,6 +16,7 @@ from tactile_graph.errors import DataError
 from tactile_graph.inspect import Failed, Skipped
 from tactile_graph.many import Portion
 from tactile_graph.wires.frame import Frame
+from tactile_graph_classifiers.database.instrument import Instrument
 from tactile_graph_classifiers.database.relief_rows import Press
 from tactile_graph_classifiers.measuring.measurements import Measurements
 from tactile_graph_classifiers.measuring.shapes import true_shape
@@ -53,6 +54,10 @@ class Readings:
         How many of these because a step failed.
     presses : list of Press
         The images they were measured of, if they are to be kept.
+    instruments : list of Instrument
+        What the frames were recorded with, each once.
+    by_law : bool
+        Whether readings of volts, of what nobody knows, were made another quantity.
     """
 
     rows: list[Measurements] = field(default_factory=list)
@@ -61,6 +66,8 @@ class Readings:
     left_out: Counter[str] = field(default_factory=Counter)
     n_failed: int = 0
     presses: list[Press] = field(default_factory=list)
+    instruments: list[Instrument] = field(default_factory=list)
+    by_law: bool = False
 
     @property
     def shape(self) -> str:
@@ -75,6 +82,8 @@ class Readings:
         self.left_out.update(later.left_out)
         self.n_failed += later.n_failed
         self.presses += later.presses
+        self.by_law |= later.by_law
+        self.instruments = list(dict.fromkeys(self.instruments + later.instruments))
 
 
 class Reader:
@@ -109,7 +118,23 @@ class Reader:
             found.rows.append(getattr(outcome, "measurements", outcome))
             found.sources.append(_source(self._pipeline, frame))
             found.shapes.add(true_shape(frame))
+            found.by_law |= is_by_law(frame, found.rows[-1].quantity)
+            if (instrument := instrument_of(frame)) not in found.instruments:
+                found.instruments.append(instrument)
         return found
+
+
+def instrument_of(frame: Frame) -> Instrument:
+    """Return what a frame was recorded with."""
+    return Instrument(*frame.image.shape, *frame.image.pitch_cm)
+
+
+def is_by_law(frame: Frame, quantity: str) -> bool:
+    """Return whether a law made a frame's volts another quantity, of which nobody can be sure.
+
+    Where the truth is known, the frame was simulated, or its pad is known too.
+    """
+    return frame.image.quantity == "volt" != quantity and bool(quantity) and frame.truth is None
 
 
 def _press(image: Any) -> Press:

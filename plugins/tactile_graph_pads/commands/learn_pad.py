@@ -24,6 +24,8 @@ if TYPE_CHECKING:
               help="A recording of the pad with nothing on it; may be repeated.")  # fmt: skip
 @click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path),
               help="Where the pad goes (.yaml); without it, it is only said.")  # fmt: skip
+@click.option("--overwrite", is_flag=True,
+              help="Write the pad over files that are there, edited or not.")  # fmt: skip
 @click.option("--plots", type=click.Path(dir_okay=False, path_type=Path),
               help="A page of plots that says how good it is (.html).")  # fmt: skip
 @click.option("--places", type=click.Path(exists=True, dir_okay=False, path_type=Path),
@@ -35,6 +37,7 @@ def learn_pad(
     recordings: tuple[str, ...],
     empty: tuple[Path, ...],
     output: Path | None,
+    overwrite: bool,
     plots: Path | None,
     places: Path | None,
     pad_name: str | None,
@@ -50,7 +53,7 @@ def learn_pad(
     from tactile_graph_pads.learning.pad_file import write_pad
     from tactile_graph_pads.pad import load_pad
 
-    _check(recordings, empty, output, plots)
+    _check(recordings, empty, output, plots, overwrite)
     base = None if pad_name is None else load_pad(pad_name)
     if base is not None and base.learned is not None:
         raise UsageError(f"--pad {pad_name}: was learned itself; give the pad it was based on")
@@ -69,10 +72,14 @@ def learn_pad(
 
 
 def _check(
-    recordings: Sequence[str], empty: Sequence[Path], output: Path | None, plots: Path | None
+    recordings: Sequence[str],
+    empty: Sequence[Path],
+    output: Path | None,
+    plots: Path | None,
+    overwrite: bool,
 ) -> None:
     """Refuse before the work what cannot be done in the end."""
-    from tactile_graph.cli.targets import check_targets
+    from tactile_graph.cli.targets import check_targets, refuse_existing
     from tactile_graph.errors import UsageError
     from tactile_graph.files import check_target
     from tactile_graph_pads.learning.pad_file import files_of
@@ -93,6 +100,8 @@ def _check(
         check_target(option, path)
     written = [("-o", path) for path in files_of(output)] if output is not None else []
     check_targets([*written, ("--plots", plots)])
+    if not overwrite:
+        refuse_existing(written)
 
 
 def _read(

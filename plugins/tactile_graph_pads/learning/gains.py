@@ -27,7 +27,8 @@ class Gains(NamedTuple):
     ``alike`` is the correlation of what two halves of the frames say of the elements' logarithms;
     ``sigma`` the standard deviation of a gain's logarithm in one placement, and ``fixed`` the
     share of its variance that stays with the element. ``halves`` holds both halves' logarithms
-    for drawing, NaN where too few comparisons were made.
+    for drawing, NaN where too few comparisons were made. ``lacks`` says what there is too little of
+    to tell any gain, empty where there is enough.
     """
 
     gain: Array
@@ -36,6 +37,7 @@ class Gains(NamedTuple):
     sigma: float
     fixed: float
     halves: tuple[Array, Array]
+    lacks: str = ""
 
     @property
     def stand_out(self) -> bool:
@@ -70,11 +72,10 @@ def gains(readings: Array, touched: Flags, good: Flags) -> Gains:
     pairs = sums[0].laplacian + sums[1].laplacian
     number = sums[0].number + sums[1].number
     comparisons = pairs.diagonal().reshape(good.shape)
-    told = np.minimum(sums[0].laplacian.diagonal(), sums[1].laplacian.diagonal()) >= LEAST_PAIRS
-    seen = np.where(touched & good, readings, 0.0)
-    moved = len(seen) >= LEAST_PLACEMENTS and spread(seen) >= LEAST_SPREAD
-    if not moved or told.sum() < LEAST_ELEMENTS:
-        return _untold(comparisons, np.nan)
+    fewest = np.minimum(sums[0].laplacian.diagonal(), sums[1].laplacian.diagonal())
+    told, seen = fewest >= LEAST_PAIRS, np.where(touched & good, readings, 0.0)
+    if lacks := _lacks(seen, fewest, int(good.sum())):
+        return _untold(comparisons, np.nan)._replace(lacks=lacks)
     one_comparison = float(sums[0].squares + sums[1].squares) / number
     first, second = (_solved(s.laplacian, s.sums, 1e-2) for s in sums)
     covariance = np.cov(first[told], second[told])
@@ -91,6 +92,33 @@ def gains(readings: Array, touched: Flags, good: Flags) -> Gains:
     if alike < LEAST_ALIKE:
         gain, fixed = np.ones(good.shape), 0.0
     return Gains(gain, comparisons, alike, sigma, fixed, (halves[0], halves[1]))
+
+
+def _lacks(seen: Array, fewest: Array, n_good: int) -> str:
+    """Return what there is too little of to tell gains, and how much more is wanted; or nothing.
+
+    ``fewest`` holds each element's comparisons in that half of the placements that has fewer.
+    """
+    n, n_told = len(seen), int((fewest >= LEAST_PAIRS).sum())
+    if n < LEAST_PLACEMENTS:
+        return f"at least {LEAST_PLACEMENTS} are needed"
+    if (scatter := spread(seen)) < LEAST_SPREAD:
+        return (
+            f"they lie in one place (their centres scatter by {scatter:.2g} of the width of what "
+            f"they touch, at least {LEAST_SPREAD:g} is needed); put objects down all over the pad"
+        )
+    if n_told >= LEAST_ELEMENTS:
+        return ""
+    often = float(np.sort(fewest)[-LEAST_ELEMENTS]) if fewest.size >= LEAST_ELEMENTS else 0.0
+    told = (
+        f"{n_told} of {n_good} elements lay within contacts often enough to be compared with their "
+        f"neighbours {LEAST_PAIRS:g} times in each half of them, at least {LEAST_ELEMENTS} are "
+        "needed; "
+    )
+    if often == 0.0:
+        return f"{told}put down objects that cover more elements"
+    more = int(np.ceil(n * (LEAST_PAIRS / often - 1.0)))
+    return f"{told}make about {more} more that touch other elements, of objects of other sizes too"
 
 
 def spread(readings: Array) -> float:

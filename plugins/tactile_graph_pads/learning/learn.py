@@ -14,7 +14,7 @@ from tactile_graph.quantities import unit_of
 from tactile_graph_pads.defects import Defects
 from tactile_graph_pads.learned import GOOD, Elements, Learned, Reading, TurnOn
 from tactile_graph_pads.learning.force_curve import ForceCurve, force_curve
-from tactile_graph_pads.learning.gains import LEAST_PLACEMENTS, Gains, gains
+from tactile_graph_pads.learning.gains import LEAST_ALIKE, Gains, gains
 from tactile_graph_pads.learning.place_fit import (
     LEAST_GROUPS,
     LEAST_PLACES,
@@ -254,7 +254,8 @@ def _of_objects(
 ) -> LearnedPad:
     rest, seen = known.rest, _pressed(objects, bare, shows_from, known)
     if not seen.gains.stand_out:
-        notes.append(_no_gains(seen.gains, seen.placements))
+        n_touching = int((bare >= shows_from).any(axis=(1, 2)).sum())
+        notes.append(_no_gains(seen.gains, seen.placements, n_touching))
     curve = force_curve(seen.evened.reshape(len(objects), -1), objects.weight_g, shows_from)
     places = _places(objects)
     level, right = _level(seen.evened, places, shows_from)
@@ -406,13 +407,15 @@ def _full_scale(values: Array, rest: Resting) -> float | None:
     return top if at_top.sum() >= SATURATED and at_top.any(axis=0).sum() > 1 else None
 
 
-def _no_gains(found: Gains, n_placements: int) -> str:
-    alike = f"two halves of {n_placements} placements agree on them by {found.alike:.2f} only"
-    least = (
-        f"{n_placements} placements touch too few elements often enough, or always in one place; "
-        f"put objects down all over the pad, {LEAST_PLACEMENTS} times at least"
+def _no_gains(found: Gains, n_placements: int, n_touching: int) -> str:
+    alike = (
+        f"two halves of them agree on gains by {found.alike:.2f}, at least {LEAST_ALIKE:g} is "
+        "needed; put objects down more often, at other places"
     )
-    return f"Gains are not told: {alike if found.alike else least}."
+    return (
+        f"Gains are not told by {n_placements} placements ({n_touching} frames, of which those "
+        f"that touch nearly what another did count once): {found.lacks or alike}."
+    )
 
 
 def _weights_note(objects: Stack, curve: ForceCurve | None) -> list[str]:

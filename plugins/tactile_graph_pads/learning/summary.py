@@ -75,10 +75,12 @@ def _by_objects(found: LearnedPad) -> Iterator[tuple[str, str]]:
             f"of the frames agree by {found.gains.alike:.2f}",
         )
     if found.gains is not None and np.isfinite(found.gains.sigma) and found.silence is not None:
+        own = f"{found.gains.fixed:.0%} of its variance the pad's own"
+        if not found.gains.stand_out:  # the halves are too little alike to tell
+            own = "how much of it is the pad's own is not told"
         yield (
             "unevenness",
-            f"{found.gains.sigma:.2f} in the logarithm of {UNITS[found.loads]}, "
-            f"{found.gains.fixed:.0%} of its variance the pad's own; "
+            f"{found.gains.sigma:.2f} in the logarithm of {UNITS[found.loads]}, {own}; "
             f"{found.silence.voids:.0%} of covered elements void",
         )
     if learned.turn_on is not None:

@@ -13,6 +13,7 @@ from tactile_graph.cli.pasted import pasted, pasted_path
 from tactile_graph.cli.say import say
 from tactile_graph.cli.targets import check_targets
 from tactile_graph.pipeline.document import is_plain
+from tactile_graph.plugins.registry import installed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -120,17 +121,17 @@ def _show(
             told = {"file": str(path), "sensor": name, "error": str(looked)}
             say(json.dumps(told) if as_json else f"{name}: {looked}" if name else looked)
             continue
-        works = _works(looked.sensors[0].frames)
         if as_json:
+            works = _works(looked.sensors[0].frames)
             commands = [*_commands(looked, works, chosen), _levelled(looked, works, chosen)]
             commands = [command for command in commands if command]
             say(json.dumps({**data_of(looked), "sensor": name, "commands": commands}))
         else:
-            _tell(looked, works, chosen)
+            _tell(looked, chosen)
     return sum(isinstance(looked, TactileGraphError) for looked in found.values())
 
 
-def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
+def _tell(looked: Looked, settings: Sequence[str]) -> None:
     from tactile_graph_sources.inspection.words import lines_of, shades_of
 
     for line in lines_of(looked):
@@ -138,6 +139,7 @@ def _tell(looked: Looked, works: _Works, settings: Sequence[str]) -> None:
     for sensor in looked.sensors:
         for line in shades_of(sensor):
             say(line)
+    works = _works(looked.sensors[0].frames)  # when all else is said: much may be compiled
     say("  takes it:")
     for command in _commands(looked, works, settings):
         say(f"    {command}")
@@ -178,7 +180,12 @@ def _commands(looked: Looked, works: _Works, settings: Sequence[str]) -> list[st
     chosen = looked.chosen.replace("/", "-")
     name = "-".join(filter(None, (looked.path.stem, chosen)))
     target = pasted_path(name + other_kind(looked.path))
-    return [*runs, f"tactile-graph convert {path} {target}{told}"]
+    offered = installed().names("commands")
+    named = name if name.isprintable() and name[0].isalnum() else "my-object"
+    learn = [f"tactile-graph learn {pasted(named)} {path}{told}"] if "learn" in offered else []
+    if "learn-pad" in offered and not settings and looked.n_frames > 1:
+        learn.append(f"tactile-graph learn-pad {path}")
+    return [*runs, *learn, f"tactile-graph convert {path} {target}{told}"]
 
 
 def other_kind(path: Path) -> str:
@@ -262,7 +269,6 @@ def _tried(frame: Frame) -> Iterator[_Tried]:
     from tactile_graph.engine.plan import make_plan
     from tactile_graph.engine.runner import check_frame
     from tactile_graph.errors import TactileGraphError
-    from tactile_graph.plugins.registry import installed
 
     found = installed()
     for name in found.names("pipelines"):
@@ -292,7 +298,15 @@ def _takes_noise(node: Node) -> bool:
 
 
 def _reason(text: str) -> str:
-    """Return why a pipeline refuses a frame, without its own name, so that reasons can be alike."""
-    _, _, rest = text.splitlines()[0].partition("; ")[0].partition(": ")
+    """Return why a pipeline refuses a frame, without its own name, so that reasons can be alike.
+
+    What to do about it is kept where it is all there is against the pipeline.
+    """
+    first, *more = text.splitlines()
+    first, _, hint = first.partition("; ")
+    _, _, rest = first.partition(": ")
     takes = rest[rest.find(" takes ") + 1 :] if " takes " in rest else rest
-    return takes.replace(" at port 'image'", "")
+    takes = takes.replace(" at port 'image'", "")
+    if more or not hint or hint.startswith("tactile-graph inspect"):
+        return takes
+    return f"{takes}; {hint.partition(': ')[2] or hint}"  # without the file it speaks of

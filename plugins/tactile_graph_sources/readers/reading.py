@@ -347,9 +347,11 @@ class Reading:
 
     def _quantity(self, own: str) -> str:
         told = self.told.quantity
-        if told is not None and own not in ("raw", told):
+        if told not in (None, "raw") and own not in ("raw", told):
             raise DataError(
-                str(self.path), f"its values are {own}, the settings say {told}; leave that out"
+                str(self.path),
+                f"its values are {own}, the settings say {told}; leave that out, or say raw to take"
+                " them for bare readings",
             )
         return told or own
 

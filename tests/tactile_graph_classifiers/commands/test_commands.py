@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import shutil
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from tactile_graph import Frame
 from tactile_graph.api.pipeline import load
 from tactile_graph.cli import cli
 from tactile_graph.cli.endings import ending
@@ -83,9 +87,37 @@ def test_learning_the_same_frames_twice_is_told(recordings):
     code, answered, told = run("learn", "small", recordings["small"], "--frames", "2:7")
     assert code == 0
     assert "5 readings learned, 9 in all" in answered
-    assert "2 of these were learned before, from the same frames, and count twice now; " in told
+    assert "2 of these were learned before, from the same frames or a copy of them, and" in told
     assert "tactile-graph forget small begins anew" in told
+    shutil.copy(recordings["small"], "copy.npz")
+    assert "7 of these were learned before" in call("learn", "small", "copy.npz", "--frames", 7)[1]
     assert "count twice" not in call("learn", "large", recordings["small"], "--frames", 3)[1]
+
+
+@pytest.mark.slow
+def test_a_name_like_a_known_one_is_told_with_whether_they_look_the_same(recordings):
+    learned(recordings)
+    told = run("learn", " Small", recordings["small"])[2]
+    assert "'Small' is a new object beside 'small', " in told
+    assert "so they look the same; did you mean 'small'? Then tactile-graph forget Small" in told
+    assert "did you mean" not in run("learn", "Small", recordings["small"])[2]
+    told = run("learn", "LARGE", recordings["small"])[2]
+    assert "beside 'large', 0 of whose 24 readings are named as the other when left out;" in told
+
+
+@pytest.mark.slow
+def test_few_readings_are_told_where_they_make_shares_and_strangers_a_guess(recordings):
+    for name in ("small", "large"):
+        *_, told = run("learn", name, recordings[name], "--frames", 3)
+    few = "fewer than 10 readings of large (3), small (3)"
+    assert f"these shares tell little yet: {few}, which leave it guessing" in told
+    assert few in run("objects")[2]
+    assert f"strangers may pass for known, and margins say little: {few}; learn more" in run(
+        "identify", recordings["strange"], "--frames", 1
+    )[2]  # fmt: skip
+    for name in ("small", "large"):
+        told = run("learn", name, recordings[name], "--frames", "3:")[2]
+    assert "fewer than" not in told + run("identify", recordings["small"], "--frames", 1)[2]
 
 
 @pytest.mark.slow
@@ -156,6 +188,14 @@ def test_export_and_import_move_objects_between_databases(recordings):
     assert code == 2
     assert "there already: large, small; forget them first" in text
     assert call("objects", "--export", "nowhere/o.yaml")[0] == 2
+    edited = Path("o.yaml").read_text(encoding="utf-8") + "# edited\n"
+    Path("o.yaml").write_text(edited, encoding="utf-8")
+    code, text = call("objects", "--export", "o.yaml")
+    assert code == 2
+    assert "--export o.yaml: is there already; name another file, or write over it with" in text
+    assert Path("o.yaml").read_text(encoding="utf-8") == edited
+    assert call("objects", "--export", "o.yaml", "--overwrite")[0] == 0
+    assert "edited" not in Path("o.yaml").read_text(encoding="utf-8")
 
 
 def test_frames_that_fail_or_are_empty_are_left_out_and_counted(tmp_path, recordings):
@@ -269,6 +309,51 @@ def test_readings_in_another_unit_end_identify_at_once_with_the_remedy(recording
         "takes gram at port 'features', got a frame of raw; tactile-objects.sqlite: the objects"
         " were learned in gram; learn them from recordings like these" in told
     )
+
+
+@pytest.mark.slow
+def test_volts_are_taken_for_a_pad_nobody_named_only_with_a_word_and_stay_as_they_are_if_told(
+    recordings,
+):
+    for name in ("small", "large"):
+        frames = load("features").with_source("recording", path=str(recordings[name])).frames()
+        write_npz(Path(f"{name}.npz"), [replace(frame, truth=None) for frame in frames])
+    law = "the volts were taken for those of pad 'thesis', by its circuit and law"
+    assert law in run("learn", "small", "small.npz")[2]
+    assert law in run("identify", "small.npz", "--frames", 1)[2]
+    named = ("--set", "siemens.pad=thesis", "--set", "grams.pad=thesis")
+    assert law not in run("learn", "small", "small.npz", *named)[2]
+    assert law not in run("learn", "small", recordings["small"])[2]  # simulated, on that pad
+    bare = ("--database", "bare.sqlite", "--with", "quantity=raw")
+    for name in ("small", "large"):
+        code, _, told = run("learn", name, f"{name}.npz", *bare)
+        assert (code, law in told) == (0, False)
+    assert "readings in raw" in answer("objects", *bare[:2])[1]
+    assert answer("identify", "large.npz", *bare)[1].splitlines()[-1] == "large: 12"
+    told = " ".join(run("identify", "large.npz", *bare[:2])[2].split())
+    assert "or take these for bare readings too (--with quantity=raw)" in told
+
+
+@pytest.mark.slow
+def test_another_grid_or_pitch_than_was_learned_on_is_told(recordings):
+    learned(recordings)
+    assert ", of 16 x 16 elements 1.3 x 1.3 cm apart" in answer("objects")[1]
+    for name, columns, pitch_cm in (("fine", 16, 0.5), ("wide", 20, 1.3)):
+        values = np.zeros((16, columns))
+        values[4:9, 4:9] = 500.0
+        frames = [Frame.of(values, pitch_cm, quantity="gram", index=k) for k in range(4)]
+        write_npz(Path(f"{name}.npz"), frames)
+    told = run("identify", "fine.npz")[2]
+    assert "frames are of 16 x 16 elements 0.5 x 0.5 cm apart, but the objects were learned" in told
+    code, told = call("learn", "x", "fine.npz")
+    assert code == 2
+    assert "those of another instrument go into a database of their own" in told
+    code, told = call("learn", "x", "fine.npz", "wide.npz", "--database", "b.sqlite")
+    assert (code, Path("b.sqlite").exists()) == (2, False)
+    assert "learn those of one instrument" in told
+    code, told = call("learn", "x", "wide.npz")
+    assert code == 0
+    assert "these are readings of 16 x 20 elements" in told
 
 
 @pytest.mark.slow

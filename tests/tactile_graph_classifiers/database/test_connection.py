@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from helpers_classifiers import SETTING, lesson
+from helpers_classifiers import MAT, SETTING, lesson
 from tactile_graph.errors import DataError
 from tactile_graph_classifiers.database.choice import Choice, Manner
 from tactile_graph_classifiers.database.known import Known
@@ -271,7 +271,7 @@ def learned(path: Path) -> Known:
     lessons = [Lesson(n, "disc", rng.normal(9.0, 1.0, (6, 2)), [f"{n} {i}" for i in range(6)])
                for n in ("cup", "Würfel", "key")]  # fmt: skip
     store = ObjectDatabase(path)
-    store.learn(SETTING, lessons)
+    store.learn(SETTING._replace(instrument=MAT), lessons)
     store.keep(Choice(Manner(0.1, 8, 16.0), 18, 17, 18, 12), store.known())
     return store.known()
 
@@ -311,6 +311,9 @@ def edit(path: Path, *statements: str) -> None:
         "UPDATE features SET id = 2 WHERE id = 1",
         "UPDATE about SET quantity = 'raw'",
         "UPDATE about SET seal = 'x'",
+        "UPDATE instrument SET pitch_x_cm = 1.31",
+        "UPDATE instrument SET rows = 'many'",
+        "DELETE FROM instrument",
     ],
 )
 def test_what_another_program_changed_is_refused_by_readers_and_writers(tmp_path, statement):
@@ -340,6 +343,7 @@ def test_what_another_program_changed_is_refused_by_readers_and_writers(tmp_path
         "INSERT INTO about VALUES (2, '', '', '')",
         "INSERT INTO scatters VALUES (1, 1, 0, 1.0)",
         "UPDATE features SET id = -1",
+        "UPDATE instrument SET pitch_y_cm = 0.0",
     ],
 )
 def test_the_schema_itself_refuses_what_cannot_be(tmp_path, statement):

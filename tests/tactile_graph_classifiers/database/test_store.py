@@ -6,7 +6,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from helpers_classifiers import PAIR, SETTING, lesson, three_objects
+from helpers_classifiers import MAT, PAIR, SETTING, lesson, three_objects
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph_classifiers.database.rows import Lesson, Setting
 from tactile_graph_classifiers.database.statistics import Statistics
@@ -101,6 +101,22 @@ def test_other_features_or_another_unit_go_into_a_database_of_their_own(database
     with pytest.raises(UsageError, match="hold the features in another order"):
         database.learn(Setting(PAIR[::-1], "gram"), [lesson("a", (1, 1))])
     assert database.summaries()[0].n_readings == 1
+
+
+def test_readings_of_another_pitch_go_into_a_database_of_their_own(database):
+    database.learn(SETTING, [lesson("a", (1, 1))])  # by an earlier version, which did not say
+    assert database.known().instrument is None
+    database.learn(SETTING._replace(instrument=MAT), [lesson("a", (1, 1))])
+    database.learn(SETTING._replace(instrument=MAT._replace(rows=8)), [lesson("a", (1, 1))])
+    database.learn(SETTING, [lesson("a", (1, 1))])
+    assert database.known().instrument == database.known().chosen(["weight"]).instrument == MAT
+    fine = SETTING._replace(instrument=MAT._replace(pitch_x_cm=0.5))
+    with pytest.raises(
+        UsageError,
+        match=r"are of 16 x 16 elements 1.3 x 1.3 cm apart, the new ones of .* 0.5 x 1.3 cm apart",
+    ):
+        database.learn(fine, [lesson("b", (1, 1))])
+    assert database.summaries()[0].n_readings == 4
 
 
 def test_all_lessons_are_learned_or_none(database):

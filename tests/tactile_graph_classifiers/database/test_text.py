@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import yaml
 
-from helpers_classifiers import SETTING, export_of, three_objects
+from helpers_classifiers import MAT, SETTING, export_of, three_objects
 from tactile_graph.errors import DataError
 from tactile_graph_classifiers.database.opening import SAMPLE, load_known
 from tactile_graph_classifiers.database.rows import Lesson
@@ -16,7 +16,8 @@ def filled(path):
     database = ObjectDatabase(path)
     lessons = [Lesson(n, "disc", r, [f"{n}: {i}" for i in range(25)])
                for n, r in three_objects().items()]  # fmt: skip
-    database.learn(SETTING, [*lessons, Lesson("ä: 'ö'", "", np.array([[1e20, -1e-300]]), ["x"])])
+    setting = SETTING._replace(instrument=MAT)
+    database.learn(setting, [*lessons, Lesson("ä: 'ö'", "", np.array([[1e20, -1e-300]]), ["x"])])
     return database
 
 
@@ -28,6 +29,7 @@ def test_export_and_import_keep_every_digit(tmp_path):
     assert (again.names, again.features, again.quantity, again.pipeline) == (
         known.names, known.features, known.quantity, known.pipeline
     )  # fmt: skip
+    assert again.instrument == MAT
     for a, b in zip(again.objects, known.objects, strict=True):
         np.testing.assert_array_equal(a.readings, b.readings)
         assert (a.shape, a.sources) == (b.shape, b.sources)
@@ -86,6 +88,9 @@ def change(**more):
         (change(features=[]), "features: must be a list of different names"),
         (change(features=["a", "a"]), "features: must be a list of different names"),
         (change(features="ab"), "features: must be a list of different names, got 'ab'"),
+        (change(instrument=3), "instrument: must be whole numbers rows and columns, and"),
+        (change(instrument={**MAT._asdict(), "rows": 0}), "all above 0, got {'rows': 0"),
+        (change(instrument={**MAT._asdict(), "rows": 1.5}), "whole numbers rows"),
         (change(objects={}), "objects: must be a list, got {}"),
         (change(objects=[1]), "object 1: must be a mapping with a name, got 1"),
         (change(objects=[{"name": "a", "reading": []}]), "object 'a': unknown key 'reading'; did"),

@@ -14,7 +14,7 @@ from tactile_graph_classifiers.database.choice import Choice, Manner
 from tactile_graph_classifiers.database.opening import load_known
 from tactile_graph_classifiers.distances import choosing
 from tactile_graph_classifiers.distances.canonical import Space, WithLogarithms
-from tactile_graph_classifiers.distances.choosing import Examples, choose, left_out_squares
+from tactile_graph_classifiers.distances.choosing import Examples, choose, name_left_out
 from tactile_graph_classifiers.distances.discriminant import CanonicalDiscriminant
 from tactile_graph_classifiers.distances.discriminant_model import Learned
 from tactile_graph_classifiers.measuring.measurements import Measurements
@@ -109,6 +109,31 @@ def test_what_was_left_out_foretells_what_new_readings_get():
     assert choice.n_left_out == 300
     assert choice.n_right / 300 == pytest.approx(np.mean(right), abs=0.07)
     assert 0 < choice.n_found <= choice.n_strangers == 300
+
+
+@pytest.mark.slow
+def test_margins_are_as_sure_as_names_are_right_where_readings_have_long_tails():
+    margins, right = [], []
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        objects = {f"{k}": 50.0 + 2.0 * rng.normal(size=12) + rng.standard_t(2.5, (125, 12))
+                   for k in range(8)}  # fmt: skip
+        learned, tested = split(objects, 25)
+        one = CanonicalDiscriminant(database=export_of(learned, NAMES), reject=False)
+        found = [(one(measured(row)), name) for name, rows in tested.items() for row in rows]
+        margins += [it.margin for it, _ in found]
+        right += [it.name == name for it, name in found]
+    assert np.mean(1.0 / (2.0 - np.array(margins))) == pytest.approx(np.mean(right), abs=0.02)
+
+
+@pytest.mark.slow
+def test_where_all_left_out_are_named_right_margins_stay_as_they_are():
+    some = examples(three_objects(), ("weight", "area_cm2"))
+    named = name_left_out(some, Manner(0.1, 8, 16.0))
+    assert (named.unlikeliness.argmin(axis=1) == named.labels).all()
+    assert named.temperature() == 1.0
+    none = named._replace(unlikeliness=np.zeros((0, 3)), labels=named.labels[:0])
+    assert none.temperature() == 1.0
 
 
 @pytest.mark.slow
@@ -291,9 +316,9 @@ def test_runs_of_successive_readings_are_left_out_together():
     some = examples({"a": normal_rows(np.random.default_rng(0), (9.0, 5.0), (1, 1), 20),
                      "b": [[1.0, 2.0]]}, ("weight", "area_cm2"))  # fmt: skip
     assert some.runs.tolist() == [*np.repeat(np.arange(10), 2), -1]
-    assert len(left_out_squares(some, Manner(0.1, 8, 16.0))) == 20
+    assert len(name_left_out(some, Manner(0.1, 8, 16.0)).squares) == 20
     # 20 readings make 6 runs of 3 or 4, and each run one mean of three
-    assert len(left_out_squares(some, Manner(0.1, 8, 16.0), 3)) == 6
+    assert len(name_left_out(some, Manner(0.1, 8, 16.0), 3).labels) == 6
 
 
 def test_a_choice_says_how_well_it_did():

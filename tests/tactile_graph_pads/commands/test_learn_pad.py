@@ -40,6 +40,17 @@ def test_an_empty_recording_alone_makes_a_pad_with_noise_and_offset(tmp_path: Pa
     assert "No objects were recorded" in said
 
 
+def test_a_table_that_was_edited_stays_unless_it_is_to_be_overwritten(tmp_path: Path) -> None:
+    empty, _ = MadeUpPad().recorded(tmp_path, n_objects=1)
+    table = tmp_path / "pad.elements.csv"
+    table.write_text("edited")
+    told = f"-o {table}: is there already; name another file, or write over it with --overwrite"
+    assert told in refused("--empty", empty, "-o", tmp_path / "pad.yaml")
+    assert table.read_text() == "edited"
+    run("--empty", empty, "-o", tmp_path / "pad.yaml", "--overwrite")
+    assert table.read_text() != "edited"
+
+
 @pytest.mark.slow
 def test_with_objects_it_tells_what_is_dead_stuck_and_uneven(tmp_path: Path) -> None:
     pad = MadeUpPad(

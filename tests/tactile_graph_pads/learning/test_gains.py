@@ -1,5 +1,7 @@
 """Gains come out of objects whose load nobody told, and chance is not taken for gains."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -55,6 +57,20 @@ def test_a_bad_element_is_compared_with_nobody():
     found = gains(readings, on, good)
     assert found.gain[5, 6] == 1.0
     assert np.std(np.log(found.gain[good]) - log_gain[good]) < 0.15
+
+
+def test_what_there_is_too_little_of_is_told_and_so_much_more_is_enough():
+    log_gain, good = 0.4 * np.random.default_rng(5).standard_normal(SHAPE), np.ones(SHAPE, bool)
+    assert gains(*presses(log_gain, 10), good).lacks == "at least 20 are needed"
+    readings, on = (np.repeat(part[:1], 40, axis=0) for part in presses(log_gain))
+    assert gains(readings, on, good).lacks.startswith("they lie in one place (their centres")
+    few = gains(*presses(log_gain, 20), good).lacks
+    told = re.fullmatch(r"(\d) of 130 elements lay .* make about (\d+) more that touch .*", few)
+    assert told is not None
+    assert int(told[1]) < 10
+    assert gains(*presses(log_gain, 20 + 2 * int(told[2])), good).lacks == ""
+    points = np.eye(130).reshape(130, *SHAPE)
+    assert gains(points, points > 0.0, good).lacks.endswith("objects that cover more elements")
 
 
 def test_nothing_touched_tells_nothing():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -91,8 +92,21 @@ def test_an_object_at_rest_for_long_is_one_placement(tmp_path: Path) -> None:
     found = learn_pad(
         stack(tmp_path / "e.npz", list(pad.empty())), stack(tmp_path / "o.npz", frames)
     )
-    assert any("1 placements touch too few elements" in note for note in found.notes)
+    counted = "not told by 1 placements (80 frames, of which those that touch nearly what another"
+    assert any(counted in note and "at least 20 are needed" in note for note in found.notes)
     assert found.learned.gain_of is None
+
+
+@pytest.mark.slow
+def test_where_halves_of_the_frames_are_unlike_nothing_is_said_of_the_pads_own_unevenness(
+    tmp_path: Path,
+) -> None:
+    found = learned(tmp_path, MadeUpPad(), lambda v: v)
+    assert found.gains is not None
+    unlike = replace(found, gains=found.gains._replace(alike=0.57, fixed=0.0))
+    told = dict(summary(unlike))["unevenness"]
+    assert "how much of it is the pad's own is not told" in told
+    assert "0%" not in told.partition(";")[0]
 
 
 @pytest.mark.slow

@@ -109,6 +109,35 @@ def test_people_read_the_same_and_see_the_fullest_frame(mat: Path) -> None:
     assert len({c for line in frame for c in line.strip(" |x")}) > 3
 
 
+def test_what_it_is_is_said_before_any_pipeline_is_tried(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(frames: object) -> None:
+        raise RuntimeError("while kernels are compiled")
+
+    monkeypatch.setattr(inspect, "_works", interrupted)
+    np.save(tmp_path / "a.npy", film(3, 6, 10))
+    result = CliRunner().invoke(cli, ["inspect", str(tmp_path / "a.npy")])
+    assert result.exit_code != 0
+    assert "grid      6 rows x 10 columns" in result.stdout
+
+
+@pytest.mark.slow  # much is compiled
+def test_objects_in_another_unit_than_the_samples_are_refused_with_how_to_learn_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    frames = [Frame.of(v, 1.0, quantity="kilopascal") for v in film(12, 8, 8)]
+    write_npz(Path("mug.npz"), frames)
+    shown = run("mug.npz")
+    (refused,) = (line for line in shown.splitlines() if "  not identify," in line)
+    assert "got a frame of kilopascal; the objects were learned in gram; learn them" in refused
+    assert "    tactile-graph learn-pad mug.npz" in shown.splitlines()
+    assert "    tactile-graph learn mug mug.npz" in shown.splitlines()
+    for words in ("learn mug mug.npz", "identify mug.npz"):
+        assert CliRunner().invoke(cli, words.split()).exit_code == 0
+
+
 @pytest.mark.slow  # much is compiled
 def test_where_cells_rest_at_much_tare_is_named(tmp_path: Path, nothing_tried: None) -> None:
     values = RNG.normal(0.0, 1.0, (20, 6, 8))
