@@ -118,4 +118,4 @@ def test_a_made_up_use_fills_ports_and_required_settings_in():
         return 0
 
     use = made_up_use(read_signature("join", join))
-    assert use == "my_join: {step: join, in: {a: a, b: b}, with: {n: 2}}"
+    assert use == "my_join: {step: join, in: {a: a, b: b}, with: {'n': 2}}"
