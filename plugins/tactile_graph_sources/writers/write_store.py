@@ -320,8 +320,9 @@ def _note(frame: Frame) -> bytes:
 
 
 def _converted(path: Path, frames: Iterator[Frame], about: str) -> int:
+    store = StoreWriter(path, about={"converted_from": about})  # or what is there is another's
     try:
-        with StoreWriter(path, about={"converted_from": about}) as store:
+        with store:
             for frame in frames:
                 store.write(frame)
     except Exception:  # half of a recording would pass for all of it
