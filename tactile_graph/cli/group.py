@@ -123,11 +123,12 @@ class Group(click.Group):
             return f"; it is an option: '{program} {of}--{name}'"
         if _is_pipeline(name):
             return f"; a pipeline is run by '{program} run {name}'"
-        if self._is_recording(name):
+        near = did_you_mean(name, names)
+        if self._is_recording(name) and not (near and Path(name).stem == name):  # a folder, say
             pipeline = next(filter(_is_pipeline, args), "PIPELINE")
             return f"; a pipeline is run over recordings by '{program} run {pipeline} {name}'"
         missing = registry.installed().missing_plugins()
-        near = did_you_mean(name, names) or ("" if missing else self._about(name))
+        near = near or ("" if missing else self._about(name))
         return (near or f"; there are: {one_of(names, 30)}") + missing
 
     def _is_recording(self, name: str) -> bool:

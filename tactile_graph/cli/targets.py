@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -163,11 +164,15 @@ def _same(one: Name, other: Name) -> bool:
 
 
 def _would_be_of(name: str, folder: Path) -> bool:
-    """Return whether a file would be one more of a folder's, with the ending that others have."""
+    """Return whether a file would be one more of a folder's, with the ending that most have.
+
+    Others may lie beside its frames, as outputs of earlier runs do beside pictures.
+    """
     path = Path(name)
     if not folder.is_dir() or path.resolve().parent != folder.resolve():
         return False
-    return path.suffix.lower() in {p.suffix.lower() for p in folder.iterdir() if p.is_file()}
+    endings = Counter(p.suffix.lower() for p in folder.iterdir() if p.is_file())
+    return endings[path.suffix.lower()] == max(endings.values(), default=1)
 
 
 def _is_in(name: str, folder: Path) -> bool:

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import click
+
 from tactile_graph.errors import PluginError, TactileGraphError, UsageError, did_you_mean
 from tactile_graph.exporter import Export, Exporter, Writer, close_early, write_block
 from tactile_graph.plugins.registry import installed
@@ -90,7 +92,7 @@ class Output:
         """Name the exporter, its plugin and the file in errors that are none of ours."""
         try:
             yield
-        except (TactileGraphError, BrokenPipeError, MemoryError):
+        except (TactileGraphError, click.ClickException, BrokenPipeError, MemoryError):
             raise
         except Exception as error:  # a plugin's own code may raise anything
             from tactile_graph.engine.outcomes.notices import breaks
@@ -108,6 +110,7 @@ class _Named:
         self, writer: Writer, named: Callable[[str], AbstractContextManager[None]]
     ) -> None:
         self._writer = writer
+        self._write = writer.write
         self._named = named
 
     def __getattr__(self, name: str) -> Any:
@@ -115,8 +118,11 @@ class _Named:
 
     def write(self, result: Result) -> None:
         """Take in a frame."""
-        with self._named("write"):
-            self._writer.write(result)
+        try:  # a context would cost a frame as much as a tenth of its line of CSV
+            self._write(result)
+        except Exception as error:
+            with self._named("write"):
+                raise error
 
     def write_block(self, block: Block[Result]) -> None:
         """Take in several frames."""

@@ -129,8 +129,8 @@ class Tally:
         By output and quantity, against the truth.
     started, seconds : float
         On the clock of `time.perf_counter`, and from then to the last frame.
-    prepared_s : float
-        Time that the compiler had taken before.
+    prepared_s, compiling_s : float
+        Time that the compiler had taken before, and that it took from then to the last frame.
     """
 
     outputs: list[OutputColumns]
@@ -150,6 +150,7 @@ class Tally:
     started: float = field(default_factory=time.perf_counter)
     seconds: float = 0.0
     prepared_s: float = field(default_factory=lambda: preparing.spent_s)
+    compiling_s: float = 0.0
 
     def add(self, result: Result) -> None:
         """Count a frame."""
@@ -180,7 +181,12 @@ class Tally:
         self.n_lacking += good and bool(empty)
         self.n_items_failed += sum(isinstance(gap, Failed) for gap in empty)
         self.n_not_finite += strange and good and not empty
+        self._now()
+
+    def _now(self) -> None:
+        """Note the time: what is compiled for a frame that does not come any more is beyond it."""
         self.seconds = time.perf_counter() - self.started
+        self.compiling_s = preparing.spent_s - self.prepared_s
 
     def add_block(self, block: Block[Result]) -> None:
         """Count several frames, as `add` counts each."""
@@ -200,7 +206,7 @@ class Tally:
         for part in alike:
             self._add_alike(part.outcomes, block.frames.index[part.rows[~single[part.rows]]])
         self.n += len(block) - len(rows)
-        self.seconds = time.perf_counter() - self.started
+        self._now()
 
     def _finite(self, part: Part) -> bool:
         """Return whether frames of a block are known to be good or skipped, by arrays."""
@@ -300,7 +306,7 @@ class Tally:
             _join(mine, its)
         for output, errors in later.errors.items():
             _join(self.errors.setdefault(output, {}), errors)
-        self.seconds = time.perf_counter() - self.started
+        self._now()
 
     def kept(self) -> dict[str, Any]:
         """Return all of it as plain data, which `of_kept` makes a tally of again."""
@@ -370,10 +376,10 @@ class Tally:
             yield _labelled("skipped", "yellow", text)
 
     def _last(self, interrupted: str) -> Text:
-        compiling_s = preparing.spent_s - self.prepared_s
         told, running_s = "", self.seconds
-        if compiling_s > WORTH_A_LINE_S:
-            told, running_s = f", {compiling_s:.1f} s of it compiling", running_s - compiling_s
+        if self.compiling_s > WORTH_A_LINE_S:
+            told = f", {self.compiling_s:.1f} s of it compiling"
+            running_s -= self.compiling_s
         rate = f" ({self.n / running_s:.4g} a second)" if running_s > 0 and self.n else ""
         frames = "frame" if self.n == 1 else "frames"
         text = Text.assemble(

@@ -99,7 +99,7 @@ def _is_plain(kind: type) -> bool:
     own = ("__copy__", "__getnewargs_ex__", "__getnewargs__", "__setstate__")
     common = ("__new__", "__reduce__", "__reduce_ex__", "__getstate__")
     return (
-        kind.__dictoffset__ != 0
+        kind.__dictoffset__ != 0  # less than 0 where Python lays out the fields itself
         and not any(hasattr(kind, name) for name in own)
         and all(getattr(kind, name) is getattr(object, name) for name in common)
         and not any("__slots__" in vars(c) and c.__slots__ for c in kind.__mro__)  # type: ignore[attr-defined]

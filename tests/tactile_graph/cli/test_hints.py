@@ -47,6 +47,13 @@ def test_a_pipelines_file_may_be_meant_by_a_name_and_the_other_way_round() -> No
     assert "there is a pipeline named 'discs'" in call("run", "discs.yaml").stderr
 
 
+def test_a_folder_that_is_called_nearly_as_a_command_is_not_what_was_meant() -> None:
+    Path("plugin").mkdir()
+    Path("films").mkdir()
+    assert "no command named 'plugin'; did you mean 'plugins'?" in call("plugin").stderr
+    assert "run over recordings by 'cli run PIPELINE films'" in call("films").stderr
+
+
 def test_a_condition_that_fails_is_told_by_its_words_not_by_a_place_in_no_file() -> None:
     guarded = "{step: load, in: frame, when: 1 / (l.total - l.total) > 1}"
     nodes = f"{{l: {{step: load, in: frame}}, c: {guarded}}}"

@@ -185,6 +185,10 @@ def test_a_folder_that_is_read_gets_no_file_that_would_be_one_of_its_frames(fold
         UsageError, match=r"^-o errors/f2\.CSV: would be a part of what the command"
     ):
         CliRunner().invoke(written, ["errors", "-o", "errors/f2.CSV"], catch_exceptions=False)
+    for name in ("f1.png", "f2.png", "f3.png"):  # pictures, and outputs of earlier runs beside
+        (folder / "errors" / name).write_text("")
+    got = CliRunner().invoke(written, ["errors", "-o", "errors/f2.csv"], catch_exceptions=False)
+    assert got.exit_code == 0
 
 
 def test_what_may_be_named_is_let_through(folder: Path) -> None:

@@ -10,9 +10,11 @@ from click.testing import CliRunner
 
 from tactile_graph import Frame
 from tactile_graph.cli import cli
+from tactile_graph.errors import UsageError
+from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires import Circle, TrueObject
-from tactile_graph_sources.commands.convert import convert
+from tactile_graph_sources.commands.convert import OFFERS, convert
 from tactile_graph_sources.recording import recording
 from tactile_graph_sources.writers.write_npz import write_npz
 from tactile_graph_sources.writers.write_store import StoreWriter
@@ -101,6 +103,15 @@ def test_a_store_that_is_there_is_refused_with_what_goes_on_with_it(
     got = CliRunner().invoke(convert, [str(tmp_path / "a.npz"), str(target)])
     remedies = f"remove it, or choose another name; 'record --append {target}' goes on with it"
     assert f"{target} is there already; {remedies}\n" in got.stderr
+
+
+def test_a_store_that_came_to_be_meanwhile_stays(tmp_path: Path, made: list[Frame]) -> None:
+    write = installed().load(OFFERS, ".zarr").write
+    write(tmp_path / "b.zarr", iter(made), "another")
+    with pytest.raises(UsageError, match="is there already"):
+        write(tmp_path / "b.zarr", iter(made[:1]), "this one")
+    read = list(recording(path=tmp_path / "b.zarr", report=Report()))
+    assert len(read) == len(made)
 
 
 @pytest.mark.parametrize(

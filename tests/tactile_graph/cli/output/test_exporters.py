@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from pathlib import Path
 
+import click
 import pytest
 
 from helpers_cli import call, install
@@ -78,6 +79,18 @@ def test_an_error_names_exporter_and_plugin_and_leaves_no_note_of_nothing(
     )
     assert told in got.stderr
     assert not Path("q.md.gz.meta.json").exists() or method == "write"
+
+
+def test_what_an_exporter_refuses_in_clicks_own_words_is_shown_so(
+    exporters: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refusing(*_: object) -> None:
+        raise click.BadParameter("q.md.gz is too short a name")
+
+    monkeypatch.setattr(import_module("tg_words").Words, "__init__", refusing)
+    got = call("run", "p.yaml", "-o", "q.md.gz")
+    assert got.exit_code == 2
+    assert got.stderr.startswith("error: Invalid value: q.md.gz is too short a name\n")
 
 
 def test_the_name_that_is_suggested_is_taken(exporters: Path) -> None:

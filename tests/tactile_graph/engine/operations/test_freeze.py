@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -103,6 +104,13 @@ def test_a_record_that_is_named_twice_stays_one() -> None:
     assert net.nodes[0] is net.first
     assert net.nodes[0] is not node
     assert net.nodes[0].near == [1]
+
+
+def test_a_plain_record_is_copied_by_its_fields_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(copy, "copy", lambda _: pytest.fail("slower by half"))
+    node = Node([1])
+    assert freeze(node).near == [1]
+    assert freeze(node) is not node
 
 
 class Sealed(Node):
