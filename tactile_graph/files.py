@@ -81,7 +81,8 @@ def whole_folder(name: Name) -> Iterator[Path]:
     Raises
     ------
     UsageError
-        If the hidden folder cannot be made, or what is made cannot be given its name.
+        If the hidden folder cannot be made, or what is made cannot be given its name: something
+        else may have got it meanwhile, which stays.
     """
     target = Path(name)
     hidden = part_of(target)
@@ -91,6 +92,8 @@ def whole_folder(name: Name) -> Iterator[Path]:
         made = hidden / target.name
         yield made
         if made.exists():
+            if target.exists():
+                raise UsageError(f"{name} is there already: it came to be meanwhile, and stays")
             with said(name):
                 made.rename(target)
     finally:

@@ -95,12 +95,15 @@ def convert(
             from tactile_graph_sources.readers.words.truth_file import with_truth
 
             frames = opened.enter_context(closing(with_truth(frames, truth, report)))
+        if source is not None and not installed().has("readers", source):
+            frames = kept.until_ctrl_c(frames)  # which is what ends those of a pad at a port
         about = source or ", ".join(r.name for r in recordings)
         with opened:
             n = writer.write(target, kept.watch(islice(frames, n_frames)), about)
     except ValueError as error:
         raise UsageError(str(error)) from error
-    say(f"{target}: {n} frame{'s' if n != 1 else ''}")
+    if n or not kept.interrupted:
+        say(f"{target}: {n} frame{'s' if n != 1 else ''}")
     for what, count in report.counts.items():
         if what.startswith("recordings"):
             say(f"{what}: {count}", err=True)
@@ -109,6 +112,8 @@ def convert(
     lost = [name for name in kept.names if name in writer.loses]
     if lost:
         say(f"left out, as a {ending} has no place for it: {', '.join(lost)}", err=True)
+    if kept.interrupted:
+        raise KeyboardInterrupt
 
 
 def _check(recordings: list[Path], target: Path, source: str | None) -> str:
@@ -160,6 +165,14 @@ class _Carried:
 
     def __init__(self) -> None:
         self.names: dict[str, None] = {}
+        self.interrupted = False
+
+    def until_ctrl_c(self, frames: Iterator[Frame]) -> Iterator[Frame]:
+        """Yield frames until they or Ctrl-C end."""
+        try:
+            yield from frames
+        except KeyboardInterrupt:
+            self.interrupted = True
 
     def watch(self, frames: Iterator[Frame]) -> Iterator[Frame]:
         for frame in frames:

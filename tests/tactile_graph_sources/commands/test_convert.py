@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -112,6 +113,22 @@ def test_a_store_that_came_to_be_meanwhile_stays(tmp_path: Path, made: list[Fram
         write(tmp_path / "b.zarr", iter(made[:1]), "this one")
     read = list(recording(path=tmp_path / "b.zarr", report=Report()))
     assert len(read) == len(made)
+
+
+@pytest.mark.parametrize("ending", ["zarr", "npz", "csv"])
+def test_frames_that_ctrl_c_alone_ends_are_kept(
+    tmp_path: Path, made: list[Frame], monkeypatch: pytest.MonkeyPatch, ending: str
+) -> None:
+    def unplugged(*_: object) -> Iterator[Frame]:
+        yield from made[:3]
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tactile_graph_sources.commands.any_source.frames_of_source", unplugged)
+    target = tmp_path / f"b.{ending}"
+    got = CliRunner().invoke(cli, ["convert", "--source", "simulate", str(target)])
+    assert got.exit_code == 130
+    assert f"{target}: 3 frames\n" in got.stdout
+    assert len(list(recording(path=target, report=Report()))) == 3
 
 
 @pytest.mark.parametrize(
