@@ -18,8 +18,8 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.alike import alikeness
-from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
-from tactile_graph_likelihood.several.partings import across, partings, sketch_of_mask
+from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem, apart
+from tactile_graph_likelihood.several.partings import partings, sketch_of_mask
 from tactile_graph_likelihood.several.scene import Scene
 from tactile_graph_likelihood.several.seeds import seeds
 from tactile_graph_likelihood.several.sketch import STAGES, lay_sketches, settle_sketches
@@ -183,7 +183,7 @@ class Ladder(Scene):
         if np.count_nonzero(mask) < 2 * LEAST_PIECE:
             return []
         found, logs = np.empty((most, 2, WIDTH)), np.empty(most)
-        partings.call(beside, across(mask), LEAST_PIECE, found, logs)
+        partings.call(beside, mask, LEAST_PIECE, found, logs)
         pairs = [
             (log / self.shared + 2 * self.each, pair)
             for log, pair in zip(logs.tolist(), found, strict=True)
@@ -208,7 +208,7 @@ class Ladder(Scene):
 
 def laid_on(problem: JointProblem, points: Values) -> JointProblem:
     """Return a problem beside sketches."""
-    beside = problem._replace(load=problem.load.copy(), share=problem.share.copy())
+    beside = apart(problem)
     lay_sketches.call(beside, points)
     return beside
 

@@ -84,21 +84,50 @@ class Across(NamedTuple):
     along : ndarray, shape (ANGLES, N)
         How far each lies along the angle's direction, in pitches.
     order : ndarray of int64, shape (ANGLES, N)
-        Which comes first, second, …; sorted by numpy, since a sort compiles for a second.
+        Which comes first, second, …
     """
 
-    row: NDArray[np.int64]
-    column: NDArray[np.int64]
+    row: Places
+    column: Places
     along: Values
-    order: NDArray[np.int64]
+    order: Places
 
 
+@compiled_as_is
 def across(mask: NDArray[np.bool_]) -> Across:
-    """Return the elements of a mask in order at each angle."""
-    r, c = np.nonzero(mask)
-    angles = np.pi * (np.arange(ANGLES) + 0.5) / ANGLES
-    along = np.cos(angles)[:, None] * c + np.sin(angles)[:, None] * r
-    return Across(r, c, along, np.argsort(along, axis=1, kind="stable"))
+    """Return the elements of a mask in order at each angle.
+
+    Each order is sorted from that of the angle before, of which few places differ.
+    """
+    n = 0
+    for i in range(mask.shape[0]):
+        for j in range(mask.shape[1]):
+            n += mask[i, j]
+    row, column = np.empty(n, np.int64), np.empty(n, np.int64)
+    along, order, last = np.empty((ANGLES, n)), np.empty((ANGLES, n), np.int64), np.arange(n)
+    n = 0
+    for i in range(mask.shape[0]):
+        for j in range(mask.shape[1]):
+            if mask[i, j]:
+                row[n], column[n] = i, j
+                n += 1
+    for t in range(ANGLES):
+        angle = math.pi * (t + 0.5) / ANGLES
+        cos, sin = math.cos(angle), math.sin(angle)
+        for i in range(n):
+            along[t, i] = cos * column[i] + sin * row[i]
+        for i in range(1, n):
+            at, k = last[i], i - 1
+            far = along[t, at]
+            while k >= 0 and (
+                along[t, last[k]] > far or (along[t, last[k]] == far and last[k] > at)
+            ):
+                last[k + 1] = last[k]
+                k -= 1
+            last[k + 1] = at
+        for i in range(n):
+            order[t, i] = last[i]
+    return Across(row, column, along, order)
 
 
 @compiled_as_is
@@ -156,7 +185,7 @@ def cut_at(
 
 @compiled_as_is
 def partings(
-    problem: JointProblem, piece: Across, least: int, found: Values, evidence: Values
+    problem: JointProblem, mask: NDArray[np.bool_], least: int, found: Values, evidence: Values
 ) -> None:
     """Write the best pairs of sketches for a piece beside others, and the evidence of each.
 
@@ -168,14 +197,15 @@ def partings(
     ----------
     problem : JointProblem
         Beside the others.
-    piece : Across
+    mask : ndarray of bool, shape (rows, columns)
+        The piece.
     least : int
         Elements on either side.
     found : ndarray, shape (M, 2, 6)
     evidence : ndarray, shape (M,)
         Written, the likeliest at first sight first; -inf where there are fewer.
     """
-    rows, cols = problem.states.shape
+    (rows, cols), piece = problem.states.shape, across(mask)
     n = piece.row.shape[0]
     index, place = np.full((rows + 2, cols + 2), -1, np.int64), np.empty(n, np.int64)
     for i in range(n):

@@ -16,6 +16,7 @@ from tactile_graph_likelihood.several.joint_posterior import (
     JointProblem,
     Outlines,
     add_outlines,
+    apart,
 )
 from tactile_graph_likelihood.several.kinds import ENOUGH, allowed, area
 from tactile_graph_likelihood.several.maximise_jointly import settle
@@ -180,6 +181,6 @@ def joined(parts: list[Configuration]) -> Configuration:
 
 def laid(problem: JointProblem, found: Configuration) -> JointProblem:
     """Return a problem beside outlines."""
-    its = problem._replace(load=problem.load.copy(), share=problem.share.copy())
+    its = apart(problem)
     add_outlines.call(its, found.outlines)
     return its

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.several.partings import Across, across, spread, summed
+from tactile_graph_likelihood.several.partings import across, spread, summed
 
 Mask = NDArray[np.bool_]
 
@@ -47,30 +46,24 @@ def seeds(pieces: list[Mask], most: int, least: int) -> list[Mask]:
 
 def fullest_halves(mask: Mask, least: int) -> tuple[float, Mask]:
     """Return how much less ground two halves' ellipses take than the whole's, and one half."""
-    half, n = np.zeros_like(mask), int(np.count_nonzero(mask))
-    if n < 2 * least:
-        return 0.0, half
-    piece = across(mask)
-    angle, count, gain = fullest_cut.call(piece, np.zeros(mask.shape), least)
-    its = piece.order[angle, :count]
-    half[piece.row[its], piece.column[its]] = True
-    return gain, half
+    half = np.zeros_like(mask)
+    return fullest_half.call(mask, half, least), half
 
 
 @compiled_as_is
-def fullest_cut(piece: Across, logs: Values, least: int) -> tuple[int, int, float]:
-    """Return where a straight cut leaves the halves that fill their moments' ellipses best.
-
-    ``logs``, shape (rows, columns), are as in `summed`; what they hold does not matter.
+def fullest_half(mask: Mask, half: Mask, least: int) -> float:
+    """Mark one half of a mask where a straight cut leaves those that fill their ellipses best.
 
     Returns
     -------
-    (int, int, float)
-        At which angle, after how many elements, and how much less ground the halves' ellipses take
-        than the whole's, in elements.
+    float
+        How much less ground the halves' ellipses take than the whole's, in elements.
     """
-    n = piece.row.shape[0]
-    angle, count, best, whole, place = 0, least, math.inf, 0.0, np.empty(n, np.int64)
+    piece, count, best, whole = across(mask), 0, math.inf, 0.0
+    n, angle = piece.row.shape[0], 0
+    if n < 2 * least:
+        return 0.0
+    logs, place = np.zeros(mask.shape), np.empty(n, np.int64)  # of loads, which do not matter
     for t in range(piece.order.shape[0]):
         along, order = piece.along[t], piece.order[t]
         sums = summed(piece, t, logs, place)
@@ -80,4 +73,7 @@ def fullest_cut(piece: Across, logs: Values, least: int) -> tuple[int, int, floa
                 area = spread(sums[k]) + spread(sums[n] - sums[k])
                 if area < best:
                     angle, count, best = t, k, area
-    return angle, count, whole - best
+    for k in range(count):
+        at = piece.order[angle, k]
+        half[piece.row[at], piece.column[at]] = True
+    return whole - best
