@@ -36,8 +36,9 @@ def first_fit(image: Image, pad: Pad, gap_cm: float | None, any_pad: AnyPad) -> 
     -----
     Gains were learned under some objects and need not hold under others: foam spreads loads over
     neighbours, and dividing by gains makes such readings less even, not more. Where they scatter
-    more like those that were not evened, both are fitted, and what is likelier is kept: the density
-    of readings' logarithms is the same but for that.
+    more like those that were not evened, after more attempts too if one may have gone astray, both
+    are fitted, and what is likelier is kept: the density of readings' logarithms is the same but
+    for that.
 
     Raises
     ------
@@ -46,7 +47,13 @@ def first_fit(image: Image, pad: Pad, gap_cm: float | None, any_pad: AnyPad) -> 
     """
     found = _fitted(observed(image, pad, gap_cm), any_pad)
     plain = any_pad.unevened
-    if plain is None or not _scatters(found, any_pad.told.noise.sigma, plain.told.noise.sigma):
+    if plain is None:
+        return found
+    sigmas = any_pad.told.noise.sigma, plain.told.noise.sigma
+    if not _scatters(found, *sigmas):
+        return found
+    found = found._replace(even=found.fits.searched(found.readings, found.even))
+    if not _scatters(found, *sigmas):
         return found
     other = _fitted(observed(image, pad, gap_cm, evened=False), plain)
     return other if other.even.evidence > found.even.evidence else found
