@@ -230,6 +230,20 @@ def test_gains_that_hold_are_kept_where_a_first_attempt_went_astray(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("warm_kernels")
+def test_gains_hold_whatever_shape_is_named_first(tmp_path):
+    bench = Bench(replace(BASE, fixed=1.0), np.random.default_rng(3))
+    settings = replace(ANY_PAD, pad=str(with_gains(tmp_path, bench)))
+    one, other = (
+        Locate(shapes=shapes, settings=settings)
+        for shapes in (["disc", "rectangle"], ["rectangle", "disc"])
+    )
+    for frame in bench.frames(6):
+        a, b = one(frame.image).shape, other(frame.image).shape
+        assert (a.x_cm, a.y_cm) == pytest.approx((b.x_cm, b.y_cm), abs=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("warm_kernels")
 @pytest.mark.parametrize("step", [LocateDisc, Locate])
 def test_gains_that_do_not_hold_under_foam_are_left_out_and_others_are_not(tmp_path, step):
     bench = Bench(replace(BASE, fixed=1.0), np.random.default_rng(3))
