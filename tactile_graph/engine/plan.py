@@ -131,6 +131,11 @@ def is_ladder(item: Item) -> bool:
     return item.node is not None and item.node.kind is NodeKind.FIRST_OF
 
 
+def _needing(rules: Iterable[FrameRule], square_to: float) -> set[str]:
+    """Return the nodes that cells break a rule of which are not square to a share."""
+    return {r.node for r in rules if r.square_to is not None and r.square_to <= square_to}
+
+
 def _slots(bits: int) -> tuple[int, ...]:
     """Return which bits of a number are set, in order."""
     if bits < 1 << 64:
@@ -171,10 +176,31 @@ class _Planner:
             {i.name: i.slot for i in self.items if not (i.view and i.view.item_path)},
             tuple(r for r in {*self._refs(), *self.asked.values()} if r.node == FRAME),
             self._depth(),
-            tuple(r for r in self.pipeline.frame_rules if r.node in used),
+            tuple(self._rules(used)),
             self.by_ref,
             image,
         )
+
+    def _rules(self, used: set[str]) -> Iterable[FrameRule]:
+        """Return the rules that a frame must keep.
+
+        One about square cells is left to its step where something asked for does without: its node
+        alone fails, and a choice takes the next.
+        """
+        every = [r for r in self.pipeline.frame_rules if r.node in used]
+        squares = {r.square_to for r in every if r.square_to is not None}
+        refused = {to for to in squares if self._all_fail(_needing(every, to))}
+        return (r for r in every if r.square_to is None or r.square_to in refused)
+
+    def _all_fail(self, failed: set[str]) -> bool:
+        """Return whether nothing of what is asked for is left where some nodes fail."""
+        for name, node in self.pipeline.nodes.items():
+            read = [] if node.guard is None else [{r.node} for r in node.guard.refs]
+            read += [{r.node for r in b.refs} for b in node.inputs if b.port.required and b.refs]
+            read += [{r.node for r in node.choices}] if node.choices else []
+            if any(names <= failed for names in read):
+                failed.add(name)
+        return all(r.node in failed for r in self.asked.values())
 
     # -- slots -------------------------------------------------------------------------------
 

@@ -47,9 +47,10 @@ class Grid:
 
     On a port: ``Grid.like("other")`` demands the same grid as another port's; ``Grid(rows=16)``,
     ``Grid(pitch_cm=1.3)`` and ``Grid(min_rows=3)`` demand numbers, ``Grid(square_to=0.03)`` cells
-    whose sides differ by that share of the longer at most. On a return value:
-    ``Grid.like("image", finer_by="factor")`` says that each cell became factor x factor cells,
-    where ``finer_by`` is a number or the name of a setting.
+    whose sides differ by that share of the longer at most: a frame of others is refused, unless
+    something asked for does without the step, which therefore says `require_square` itself. On a
+    return value: ``Grid.like("image", finer_by="factor")`` says that each cell became factor x
+    factor cells, where ``finer_by`` is a number or the name of a setting.
     """
 
     rows: int | None = None

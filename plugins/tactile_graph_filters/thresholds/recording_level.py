@@ -17,6 +17,8 @@ from tactile_graph_filters.thresholds.noise_level import level_above, lower_read
 
 TOGETHER = 256
 """Cells in which noise that is cut off shows: of smaller pads, frames are looked at together."""
+MOST_APART = 3.0
+"""Times what a frame's largest reading lies above its lower quartile, by which noise may spread."""
 
 Readings = tuple[float, float, float]
 
@@ -53,7 +55,7 @@ def recording_level(recording: Path | Mapping[str, Any]) -> RecordingLevel:
         If the file is no recording.
     """
     found, quantities = [], set()
-    small: list[Image] = []
+    small: list[tuple[Image, Readings]] = []
     together: list[Readings] = []
     for frame in _frames(recording):
         image = frame.image
@@ -63,11 +65,11 @@ def recording_level(recording: Path | Mapping[str, Any]) -> RecordingLevel:
             continue
         found.append(readings)
         if image.values.size < TOGETHER:
-            if small and small[0].columns != image.columns:
+            if small and small[0][0].columns != image.columns:
                 small = []
-            small.append(image)
-            if sum(its.values.size for its in small) >= TOGETHER:
-                if of_all := lower_readings(_one_of(small)):
+            small.append((image, readings))
+            if sum(its.values.size for its, _ in small) >= TOGETHER:
+                if of_all := _of_all(small):
                     together.append(of_all)
                 small = []
     name = str(recording if isinstance(recording, Path) else dict(recording))
@@ -82,6 +84,16 @@ def recording_level(recording: Path | Mapping[str, Any]) -> RecordingLevel:
     level = level_above(spread, float(np.median(base)), float(peaks.max()))
     told = f"the noise of {name}, {len(found)} frames"
     return RecordingLevel(level, quantities.pop(), told)
+
+
+def _of_all(frames: list[tuple[Image, Readings]]) -> Readings | None:
+    """Return the readings of several frames as one; None where they differ in more than noise.
+
+    Frames that are pressed all over, or drift, lie farther apart than the cells of each do.
+    """
+    of_all = lower_readings(_one_of([image for image, _ in frames]))
+    scatter = sum(peak - base for _, (_, base, peak) in frames) / len(frames)
+    return of_all if of_all and of_all[1] - of_all[0] <= MOST_APART * scatter else None
 
 
 def _one_of(images: list[Image]) -> Image:

@@ -10,7 +10,7 @@ from annotated_types import Len
 
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.contest import tops_of_each
-from tactile_graph_likelihood.any_pad.first_fit import first_fit
+from tactile_graph_likelihood.any_pad.first_fit import gains_hold
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad, log_chances, shared_by
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, SoonSettings
@@ -83,11 +83,10 @@ class Locate:
         return self.placed(image, [self._believed(image)])[0]
 
     def _believed(self, image: Image) -> Located:
-        """Return the choice by readings evened by learned gains, or not; see `first_fit`."""
-        one = next(iter(self._every.values()))
-        if one.unevened is None:
-            return self.chosen(self.readings(image))
-        if first_fit(image, self._pad, self._gap_cm, one).fits.unevened is not None:
+        """Return the choice by readings evened by learned gains, or not; see `gains_hold`."""
+        fits = self._every.values()
+        told = any(one.unevened is not None for one in fits)
+        if not told or gains_hold(image, self._pad, self._gap_cm, fits):
             return self.chosen(self.readings(image))
         every = {name: its.unevened or its for name, its in self._every.items()}
         return self._chosen(observed(image, self._pad, self._gap_cm, evened=False), every)

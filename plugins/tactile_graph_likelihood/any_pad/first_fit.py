@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from tactile_graph.wires import Image
@@ -36,8 +37,9 @@ def first_fit(image: Image, pad: Pad, gap_cm: float | None, any_pad: AnyPad) -> 
     -----
     Gains were learned under some objects and need not hold under others: foam spreads loads over
     neighbours, and dividing by gains makes such readings less even, not more. Where they scatter
-    more like those that were not evened, both are fitted, and what is likelier is kept: the density
-    of readings' logarithms is the same but for that.
+    more like those that were not evened, after more attempts too if one may have gone astray, both
+    are fitted, and what is likelier is kept: the density of readings' logarithms is the same but
+    for that.
 
     Raises
     ------
@@ -46,7 +48,10 @@ def first_fit(image: Image, pad: Pad, gap_cm: float | None, any_pad: AnyPad) -> 
     """
     found = _fitted(observed(image, pad, gap_cm), any_pad)
     plain = any_pad.unevened
-    if plain is None or not _scatters(found, any_pad.told.noise.sigma, plain.told.noise.sigma):
+    if plain is None or not _scatters(found, any_pad):
+        return found
+    found = found._replace(even=found.fits.searched(found.readings, found.even))
+    if not _scatters(found, any_pad):
         return found
     other = _fitted(observed(image, pad, gap_cm, evened=False), plain)
     return other if other.even.evidence > found.even.evidence else found
@@ -57,6 +62,27 @@ def _fitted(readings: Readings, any_pad: AnyPad) -> FirstFit:
     return FirstFit(fits, *fits.first(readings))
 
 
-def _scatters(found: FirstFit, evened: float, uneven: float) -> bool:
+def _scatters(found: FirstFit, any_pad: AnyPad) -> bool:
     """Return whether a fit's sigma is nearer to that of readings that are not evened."""
-    return 2.0 * float(found.even.mode.p[-2]) > math.log(evened) + math.log(uneven)
+    plain = any_pad.unevened
+    if plain is None:
+        return False
+    sigmas = math.log(any_pad.told.noise.sigma) + math.log(plain.told.noise.sigma)
+    return 2.0 * float(found.even.mode.p[-2]) > sigmas
+
+
+def gains_hold(image: Image, pad: Pad, gap_cm: float | None, every: Iterable[AnyPad]) -> bool:
+    """Return whether learned gains hold in a frame, for the kind of outline that fits it.
+
+    Under an outline of another kind than the object's, readings scatter whatever the gains.
+    Errors as of `first_fit`.
+    """
+    likeliest, hold = -math.inf, True
+    for any_pad in every:
+        found = first_fit(image, pad, gap_cm, any_pad)
+        evened = found.fits.unevened is not None
+        if any_pad.unevened is None or (evened and not _scatters(found, any_pad)):
+            return True
+        if found.even.evidence > likeliest:
+            likeliest, hold = found.even.evidence, evened
+    return hold

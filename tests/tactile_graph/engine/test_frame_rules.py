@@ -14,6 +14,7 @@ from helpers_graphs import registry
 from tactile_graph import Frame, Image, Mask, Pipeline, loads
 from tactile_graph.errors import PipelineError, RuleError
 from tactile_graph.steps import Grid, Quantity
+from tactile_graph.steps.rules import require_square
 
 
 def volts(
@@ -56,6 +57,7 @@ def nearly_square(image: Annotated[Image, Grid(square_to=0.03)]) -> int:
 
 
 def exactly_square(image: Annotated[Image, Grid(square_to=0.0)]) -> int:
+    require_square(image)
     return 1
 
 
@@ -138,6 +140,36 @@ def test_the_first_frame_that_breaks_a_rule_is_refused(
     pipeline = one(nodes)
     with pytest.raises(RuleError, match=message):
         pipeline.run(frame)
+
+
+@pytest.mark.parametrize(
+    ("nodes", "outputs"),
+    [
+        ("s: {step: three, in: frame}\n  x: {step: exactly_square, in: frame}", "s, x"),
+        (
+            "s: {step: three, in: frame}\n  x: {step: exactly_square, in: frame}\n"
+            "  c: {first_of: [x, s]}",
+            "c",
+        ),
+    ],
+)
+def test_what_is_left_where_a_step_takes_square_cells_runs(nodes: str, outputs: str) -> None:
+    pipeline = loads(f"pipeline: p\nnodes:\n  {nodes}\noutputs: [{outputs}]\n", "p.yaml",
+                     registry(REGISTRY))  # fmt: skip
+    wide = Frame.of(np.ones((3, 4)), (1.0, 2.0))
+    assert pipeline.run(wide)[outputs[0]] == 3
+    assert pipeline.run(Frame.of(np.ones((3, 4)), (1.0, 1.0))).ok
+
+
+def test_where_every_output_needs_square_cells_one_frame_is_refused() -> None:
+    text = (
+        "pipeline: p\nnodes:\n  x: {step: exactly_square, in: frame}\n"
+        "  y: {step: nearly_square, in: frame}\n  c: {first_of: [x, y]}\noutputs: [c, y]\n"
+    )
+    pipeline = loads(text, "p.yaml", registry(REGISTRY))
+    assert pipeline.run(Frame.of(np.ones((3, 4)), (1.0, 1.02)))["c"] == 1
+    with pytest.raises(RuleError, match="'nearly_square' takes cells that are square to 3%"):
+        pipeline.run(Frame.of(np.ones((3, 4)), (1.0, 2.0)))
 
 
 def test_a_frame_that_keeps_the_rules_runs() -> None:

@@ -47,11 +47,15 @@ def test_of_those_that_are_invalid_nothing_is_said() -> None:
         * np.random.default_rng(1).lognormal(0.0, 0.2, (16, 16)),  # an object on more than half
         np.where(np.hypot(ROW - 7.5, COLUMN - 7.5) < 7.2, 100.0, 0.0)
         * np.random.default_rng(1).normal(1.0, 0.05, (16, 16)),  # evenly, on nearly two thirds
+        np.where(CORNER, 0.0, 100.0) * np.random.default_rng(1).normal(1.0, 0.05, (16, 16)),
+        np.where(np.arange(25) < 6, 0.0, np.random.default_rng(1).normal(100, 5, 25)).reshape(5, 5),
+        np.where((ROW == 0) & (COLUMN < 3), -np.inf, pressed()),  # to be refused
+        np.where((ROW == 0) & (COLUMN < 3), -1e200, pressed()),
         np.where(CORNER, 0.0, 5.0),
         np.zeros((16, 16)),
         np.ones((1, 3)),
     ],
-    ids=range(7),
+    ids=range(11),
 )
 def test_cells_that_nothing_touches_are_not_dead(values: np.ndarray) -> None:
     assert dead_below(Image(values)) is None

@@ -111,3 +111,12 @@ def test_a_pipeline_takes_it_from_outside_and_a_run_says_so(recording: Path) -> 
     source = ("recording", {"path": str(recording)})
     pipeline = load("contacts").with_settings({"footprint.noise_of": str(recording)}, source)
     assert pipeline.nodes["footprint"].settings["noise_of"] == recording
+
+
+def test_presses_and_drift_of_a_pad_of_few_cells_are_no_noise(tmp_path: Path) -> None:
+    values = np.rint(np.random.default_rng(1).normal(20.0, 0.3, (110, 2, 2)))
+    values[10:60] += 200.0  # most of the frames that fit into one
+    np.save(tmp_path / "r.npy", values)
+    assert recording_level(tmp_path / "r.npy").level < 40.0
+    np.save(tmp_path / "r.npy", np.rint(np.linspace(0.0, 30.0, 100))[:, None, None].repeat(16, 2))
+    assert recording_level(tmp_path / "r.npy").level < 20.0

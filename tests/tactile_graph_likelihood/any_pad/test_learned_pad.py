@@ -14,6 +14,7 @@ from tactile_graph.errors import RuleError
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.above_noise import AboveNoise
 from tactile_graph_likelihood.any_pad.choose import Locate
+from tactile_graph_likelihood.any_pad.first_fit import first_fit
 from tactile_graph_likelihood.any_pad.learned_pad import (
     Placing,
     at,
@@ -21,8 +22,10 @@ from tactile_graph_likelihood.any_pad.learned_pad import (
     taught,
     unevenness_left,
 )
+from tactile_graph_likelihood.any_pad.localise import AnyPad
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, LocateDisc
 from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.geometry.outlines import DISC
 from tactile_graph_likelihood.single.element_terms import UNKNOWN
 from tactile_graph_pads.learned import Elements, write_elements
 from tactile_graph_pads.learning.patch import N_PLACE, PatchKind
@@ -201,20 +204,50 @@ def test_learned_gains_leave_less_unevenness(tmp_path, bench):
     assert unevenness_left(evened, 0.3) == pytest.approx(0.09)
 
 
+def with_gains(folder, bench):
+    path = Path(written(folder, bench, gain_of="gram"))
+    gain = np.exp(bench.kind.sigma * bench.own)
+    state = np.full(gain.shape, "good")
+    write_elements(
+        folder / "elements.csv", Elements(bench.zero_v, np.full(gain.shape, 2e-4), gain, state)
+    )
+    data = yaml.safe_load(path.read_text())
+    data["unevenness"] = {"sigma": bench.kind.sigma, "voids": bench.kind.voids}
+    path.write_text(yaml.safe_dump(data))
+    return path
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("warm_kernels")
+def test_gains_that_hold_are_kept_where_a_first_attempt_went_astray(tmp_path):
+    bench = Bench(replace(BASE, fixed=1.0), np.random.default_rng(4))
+    settings = replace(ANY_PAD, pad=str(with_gains(tmp_path, bench)))
+    any_pad = AnyPad.of(settings, DISC)
+    for frame in bench.frames(14):
+        found = first_fit(frame.image, settings.known_pad, None, any_pad)
+        assert found.fits.unevened is not None
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("warm_kernels")
+def test_gains_hold_whatever_shape_is_named_first(tmp_path):
+    bench = Bench(replace(BASE, fixed=1.0), np.random.default_rng(3))
+    settings = replace(ANY_PAD, pad=str(with_gains(tmp_path, bench)))
+    one, other = (
+        Locate(shapes=shapes, settings=settings)
+        for shapes in (["disc", "rectangle"], ["rectangle", "disc"])
+    )
+    for frame in bench.frames(6):
+        a, b = one(frame.image).shape, other(frame.image).shape
+        assert (a.x_cm, a.y_cm) == pytest.approx((b.x_cm, b.y_cm), abs=0.01)
+
+
 @pytest.mark.slow
 @pytest.mark.usefixtures("warm_kernels")
 @pytest.mark.parametrize("step", [LocateDisc, Locate])
 def test_gains_that_do_not_hold_under_foam_are_left_out_and_others_are_not(tmp_path, step):
     bench = Bench(replace(BASE, fixed=1.0), np.random.default_rng(3))
-    path = Path(written(tmp_path, bench, gain_of="gram"))
-    gain = np.exp(bench.kind.sigma * bench.own)
-    state = np.full(gain.shape, "good")
-    write_elements(
-        tmp_path / "elements.csv", Elements(bench.zero_v, np.full(gain.shape, 2e-4), gain, state)
-    )
-    data = yaml.safe_load(path.read_text())
-    data["unevenness"] = {"sigma": bench.kind.sigma, "voids": bench.kind.voids}
-    path.write_text(yaml.safe_dump(data))
+    path = with_gains(tmp_path, bench)
     named = {"shapes": ["disc"]} if step is Locate else {}
     told, untold = step(settings=replace(ANY_PAD, pad=str(path)), **named), step(**named)
     hard = list(bench.frames(12))
