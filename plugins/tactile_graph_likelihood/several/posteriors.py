@@ -60,15 +60,11 @@ def goodness_of_load(problem: JointProblem, fitted: int) -> GoodnessOfLoad:
 def posteriors(problem: JointProblem, found: OnPad) -> tuple[list[Posterior], GoodnessOfLoad]:
     """Return each outline's posterior, and how well all together explain a pad."""
     every = [one for part in found.parts for one in posteriors_of(part)]
-    counts = [len(one.mean) for one in every]
-    together = Configuration(
-        np.array([one.kind for one in every]),
-        np.array([one.corners for one in every]),
-        np.array(
-            [np.pad(one.most_likely, (0, WIDTH - n)) for one, n in zip(every, counts, strict=True)]
-        ),
-        0.0,
-    )
+    counts, points = [len(one.mean) for one in every], np.zeros((len(every), WIDTH))
+    for row, one, n in zip(points, every, counts, strict=True):
+        row[:n] = one.most_likely
+    kinds, corners = [one.kind for one in every], [one.corners for one in every]
+    together = Configuration(np.array(kinds), np.array(corners), points, 0.0)
     fit = goodness_of_load.call(laid(problem, together), sum(counts))
     return [replace(one, surprise=fit.surprise, neighbours=fit.neighbours) for one in every], fit
 

@@ -169,13 +169,13 @@ def _table(n: int) -> Values:
     return table
 
 
-def joined(parts: list[Configuration]) -> Configuration:
-    """Return the outlines of several lists in one, with no evidence yet."""
+def joined(parts: list[Configuration], log_evidence: float = 0.0) -> Configuration:
+    """Return the outlines of several lists in one."""
     return Configuration(
         np.concatenate([p.kinds for p in parts]),
         np.concatenate([p.corners for p in parts]),
         np.concatenate([p.points for p in parts]),
-        0.0,
+        log_evidence,
     )
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -151,7 +150,7 @@ class Search(Ladder):
             place, before = (out, mask, left), self.worth(now)
             for new in self.instead(place, beside, before, found.count < room):
                 log = found.log_evidence + new.log_evidence - now.log_evidence
-                made = replace(joined([rest, new]), log_evidence=log)
+                made = joined([rest, new], log)
                 self.weighed(made.count, self.of_number(made))
                 if self.rank(made) < self.rank(found) - NEARLY:
                     continue
