@@ -44,7 +44,8 @@ def _by_label(node: Node, first: Call, context: Context) -> Call:
         hosts = {node.isolation.process: context.apart[node.name]}
 
     def call(*args: Any, **kwargs: Any) -> Any:
-        label = context.frame.label
+        frame = context.frame
+        label = frame.label if frame.state_of is None else frame.state_of
         instance = instances.get(label)
         if instance is None:
             instance = _instance(node, context, hosts) if instances else first
