@@ -17,7 +17,7 @@ from tactile_graph_filters.morphology.elements import parse_element
 from tactile_graph_filters.morphology.erosion import make_plan, sweep
 from tactile_graph_filters.nan import finite, refuse_nan
 
-NOISES = 10.0
+NOISES = 25.0
 """From so many standard deviations of the empty pad's noise on a cell is touched."""
 STEPS = 2.0
 """And no lower than from so many of the least steps that readings of the empty pad differ by."""
@@ -41,7 +41,7 @@ class Tare:
     touched : float, optional
         From which reading above the baseline on, in the image's unit, a cell is touched. The
         baseline of touched cells and of their eight neighbours is frozen, so that a resting
-        object is not eaten by it. If not given, ten standard deviations of the noise in those
+        object is not eaten by it. If not given, 25 standard deviations of the noise in those
         first frames, and no less than two steps of readings that are whole numbers of a step;
         25 where ``n_frames`` is 1, which shows no noise.
     frame_s : float
