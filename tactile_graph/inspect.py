@@ -8,7 +8,8 @@ A plugin's steps need none of this. What compares, audits, tunes or explains pip
 - the plan of a demand (`make_plan`, `Plan`), what it needs of a frame (`check_frame`), and its
   `Runner`;
 - outcomes: `Skipped`, `Failed`, `Done`, `NO_VALUE`, `NOT_ASKED`, the items of a
-  list that have none (`gaps`) or one (`with_value`); values as numbers (`scalars`) and
+  list that have none (`gaps`) or one (`with_value`); errors of steps that run in a process apart
+  and ended it or took too long (`CrashedError`, `OverrunError`); values as numbers (`scalars`) and
   as plain data (`as_data`, `without_nan`); which shape a type is (`shape_kind`) and what of
   it is held against the truth (`measures_of`);
 - its rows for tables, one for each object where there are several (`make_table`, `Table`);
@@ -17,6 +18,7 @@ A plugin's steps need none of this. What compares, audits, tunes or explains pip
   the pipelines that this one does (`named_from`).
 """
 
+from tactile_graph.engine.calls.isolated import CrashedError, OverrunError
 from tactile_graph.engine.outcomes.outcome import (
     NO_VALUE,
     NOT_ASKED,
@@ -42,12 +44,14 @@ __all__ = [
     "FRAME",
     "NOT_ASKED",
     "NO_VALUE",
+    "CrashedError",
     "Done",
     "Failed",
     "Graph",
     "Guard",
     "Node",
     "NodeKind",
+    "OverrunError",
     "Plan",
     "Ref",
     "Replay",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
@@ -16,8 +17,7 @@ class Lock:
     Parameters
     ----------
     name : path
-        Of the lock's file. It is made when the lock is first taken, and stays: were it removed,
-        a second process could lock a new file of the same name beside the first.
+        Of the lock's file. It is made when the lock is first taken, and stays but for `remove`.
     """
 
     def __init__(self, name: Name) -> None:
@@ -39,20 +39,45 @@ class Lock:
         """
         if self._file is None:
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            file = self.path.open("ab")
-            try:
-                if locked(file):
-                    self._file = file
-            finally:
-                if self._file is None:
-                    file.close()
+            while not self._taken():
+                pass
         return self.held
+
+    def _taken(self) -> bool:
+        """Take the lock if nobody holds it; return whether the file locked was the lock's still.
+
+        Where another removed it in between, a third could lock a new one of its name.
+        """
+        file = self.path.open("ab")
+        try:
+            if not locked(file):
+                return True
+            if not self._names(file):
+                return False
+            self._file = file
+            return True
+        finally:
+            if self._file is None:
+                file.close()
+
+    def _names(self, file: IO[bytes]) -> bool:
+        try:
+            return os.path.samestat(os.fstat(file.fileno()), self.path.stat())
+        except FileNotFoundError:
+            return False
 
     def release(self) -> None:
         """Let the next one take it; nothing if it is not held."""
         if self._file is not None:
             self._file.close()
             self._file = None
+
+    def remove(self) -> None:
+        """Let the next one take it, and remove its file, where nothing is left that it is for."""
+        if self._file is not None:
+            with suppress(OSError):  # Windows removes no open file
+                self.path.unlink()
+            self.release()
 
 
 def locked(file: IO[bytes], at: int = 0) -> bool:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+import time
 from functools import cache
 from typing import Any
 
@@ -35,11 +37,15 @@ def _found(registry: Registry | None) -> list[Subject]:
     return subjects(registry or installed())[0]
 
 
-def registry_of(**steps: Any) -> Registry:
+def registry_of(isolated: dict[str, float | None] | None = None, **steps: Any) -> Registry:
     class Plugin:
         @hookimpl
         def tactile_graph_steps(self) -> dict[str, Any]:
             return steps
+
+        @hookimpl
+        def tactile_graph_isolated(self) -> dict[str, float | None]:
+            return isolated or {}
 
     return Registry([("fakes", "fakes", "1", lambda: Plugin())])  # type: ignore[arg-type,return-value]
 
@@ -96,6 +102,18 @@ def numpys_error(points: Points) -> Circle:
     return Circle(float(np.linalg.inv(np.zeros((2, 2)))[0, 0]), 0.0, 1.0)
 
 
+def aborts(points: Points) -> Circle:
+    """Ends its process, where there are more than a few points."""
+    if len(points.xy_cm) > 5:
+        os.abort()
+    return centred(points)
+
+
+def hangs(points: Points) -> Circle:
+    time.sleep(600)
+    return centred(points)
+
+
 def refuses(points: Points) -> Circle:
     raise ValueError("radius_cm: must be > 0")
 
@@ -108,5 +126,5 @@ def all_corners(points: Points) -> Polygon:
 FAKES = registry_of(
     uncentred=uncentred, centred=centred, ordered=ordered, nan_out=nan_out, warns=warns,
     no_circle=no_circle, crashes=crashes, numpys_error=numpys_error, refuses=refuses,
-    hull=all_corners,
+    hull=all_corners, aborts=aborts, hangs=hangs, isolated={"aborts": None, "hangs": 0.2},
 )  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 import linecache
 import types
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tactile_graph import Frame, Pipeline, Result, TactileGraphError, hookimpl, loads
 from tactile_graph.errors import PluginError
-from tactile_graph.inspect import Skipped
+from tactile_graph.inspect import CrashedError, OverrunError, Skipped
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.wires import Image, Mask, Points
 from tactile_graph_stress.finite import not_finite
@@ -58,8 +58,9 @@ class Trial:
         self._seed = seed
         known = registry or installed()
         names = [subject.name, *subject.suppliers]
-        steps = {name: known.load("steps", name) for name in names}
-        self._pipeline = loads(_text(subject), registry=_small(steps))
+        small = _small(names, known)
+        self._is_apart = bool(small.plugins[0].offers["isolated"])
+        self._pipeline = loads(_text(subject), registry=small)
         self._runners: dict[str, Callable[[Frame], Result]] = {}
 
     def run(self, given: Given, settings: Mapping[str, Any] | None = None) -> Came:
@@ -72,6 +73,8 @@ class Trial:
                 came = Came(broke=str(error))
             except TactileGraphError as error:  # no value, or a rule of the frame or of a setting
                 came = _without_value(error)
+                if isinstance(_cause(error), (CrashedError, OverrunError)):
+                    self._runners.clear()  # a new one waits for its process
             except Exception as error:
                 came = Came(broke=f"the run crashed with {type(error).__name__}: {error}")
             else:
@@ -94,6 +97,8 @@ class Trial:
         key = repr(sorted(settings.items()))
         if key not in self._runners or self.subject.signature.stateful:
             pipeline = self._pipeline
+            if self._is_apart:
+                self._runners.clear()  # each has a process
             if settings:
                 pipeline = pipeline.with_settings({f"{NODE}.{k}": v for k, v in settings.items()})
             self._runners[key] = _checked(pipeline, pipeline.runner(seed=self._seed))
@@ -112,12 +117,19 @@ def _checked(pipeline: Pipeline, runner: Callable[[Frame], Result]) -> Callable[
     return run
 
 
+def _cause(error: TactileGraphError) -> Any:
+    """Return the error a step raised, or that stands for how its process was ended."""
+    return getattr(getattr(error, "outcome", None), "error", error)
+
+
 def _without_value(error: TactileGraphError) -> Came:
     """Return what an outcome without a value stands for."""
-    outcome = getattr(error, "outcome", None)
-    cause = getattr(outcome, "error", error)
+    cause = _cause(error)
+    if isinstance(cause, (CrashedError, OverrunError)):
+        reason = str(cause).partition(" at node")[0]
+        return Came(gave_up=reason) if isinstance(cause, OverrunError) else Came(broke=reason)
     reason = f"{type(cause).__name__}: {cause}"
-    where = getattr(outcome, "where", "")
+    where = getattr(getattr(error, "outcome", None), "where", "")
     return Came(gave_up=reason) if _typed(cause, where) else Came(broke=f"untyped {reason}")
 
 
@@ -159,17 +171,33 @@ def _mask(image: Image) -> Mask:
 
 
 class _Offer:
-    def __init__(self, steps: Mapping[str, Any]) -> None:
+    def __init__(self, steps: Mapping[str, Any], limits_s: Mapping[str, float | None]) -> None:
         self._steps = dict(steps)
+        self._limits_s = dict(limits_s)
 
     @hookimpl
     def tactile_graph_steps(self) -> Mapping[str, Any]:
         return self._steps
 
+    @hookimpl
+    def tactile_graph_isolated(self) -> Mapping[str, float | None]:
+        return self._limits_s
 
-def _small(steps: Mapping[str, Any]) -> Registry:
-    """Return a registry of these steps and of those that make what a case brings."""
-    offer: Any = _Offer({**steps, "stress_points": _points, "stress_mask": _mask})
+
+def _small(names: Sequence[str], known: Registry) -> Registry:
+    """Return a registry of these steps and of those that make what a case brings.
+
+    A step that its plugin has run in a process apart runs so here.
+    """
+    steps = {name: known.load("steps", name) for name in names}
+    limits_s = {}
+    for name in names:
+        own = known.offer("steps", name)
+        apart = own.plugin.offers.get("isolated", {})
+        if own.name in apart:
+            limits_s[name] = apart[own.name]
+    made = {**steps, "stress_points": _points, "stress_mask": _mask}
+    offer: Any = _Offer(made, limits_s)
     module: types.ModuleType = offer
     return Registry([("stress", "tactile-graph", "", lambda: module)])
 

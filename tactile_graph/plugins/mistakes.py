@@ -6,6 +6,7 @@ import importlib
 import traceback
 from collections.abc import Iterable
 from importlib.metadata import distributions
+from inspect import isroutine
 from pathlib import Path
 from types import ModuleType
 
@@ -58,7 +59,9 @@ def check_hooks(module: ModuleType, known: Iterable[str], project: str, sure: bo
     PluginError
     """
     hooks = sorted(known)
-    for name, value in vars(module).items():
+    for attribute, value in vars(module).items():
+        mark = getattr(value, f"{project}_impl", None) if isroutine(value) else None
+        name = (mark and mark["specname"]) or attribute
         if not name.startswith(f"{project}_") or not callable(value):
             continue
         marked = hasattr(value, f"{project}_impl")

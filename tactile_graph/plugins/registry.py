@@ -150,13 +150,22 @@ class Registry:
 
     def _ask(self, module: ModuleType, kind: str) -> dict[str, Any]:
         hook = getattr(self._manager.hook, f"{GROUP}_{kind}")
-        answers = [i.function() for i in hook.get_hookimpls() if i.plugin is module]
-        if not answers:
-            return {}
+        functions = [i.function for i in hook.get_hookimpls() if i.plugin is module]
+        found: dict[str, Any] = {}
+        for function in dict.fromkeys(functions):  # a module may answer a hook more than once
+            answer = self._checked(kind, function())
+            for name in answer:
+                if name in found:
+                    raise PluginError(f"hook {GROUP}_{kind}: {name!r} is offered twice")
+            found |= answer
+        return found
+
+    def _checked(self, kind: str, answer: Any) -> Mapping[str, Any]:
+        """Return an answer to a hook, which is held against what the hook wants."""
         hook_name, wanted = f"hook {GROUP}_{kind}", self._hooks[kind]
-        if not isinstance(answers[0], Mapping):
-            raise PluginError(f"{hook_name} must return a mapping, got {shown(answers[0])}")
-        for name, target in answers[0].items():
+        if not isinstance(answer, Mapping):
+            raise PluginError(f"{hook_name} must return a mapping, got {shown(answer)}")
+        for name, target in answer.items():
             if not isinstance(name, str) or not name:
                 raise PluginError(f"{hook_name}: a name must be a text, got {shown(name)}")
             if wanted.endings and not (name.startswith(".") and name.islower()):
@@ -164,7 +173,7 @@ class Registry:
                 raise PluginError(f"{hook_name}: {told}, such as '.csv', got {shown(name)}")
             if not isinstance(target, wanted.types):
                 raise PluginError(f"{hook_name}: {name!r} is {shown(target)}, {wanted.wanted}")
-        return dict(answers[0])
+        return answer
 
     @property
     def clashes(self) -> list[str]:

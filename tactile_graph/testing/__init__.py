@@ -6,9 +6,9 @@ if TYPE_CHECKING:
     from tactile_graph.testing.cases import Case as Case
     from tactile_graph.testing.cases import all_cases as all_cases
     from tactile_graph.testing.check import BrokenPromises as BrokenPromises
-    from tactile_graph.testing.check import StepReport as StepReport
     from tactile_graph.testing.check import check_step as check_step
     from tactile_graph.testing.check import examine_step as examine_step
+    from tactile_graph.testing.here import StepReport as StepReport
     from tactile_graph.testing.registries import isolated as isolated
     from tactile_graph.testing.running import run_pipeline as run_pipeline
     from tactile_graph.testing.running import run_step as run_step
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "BrokenPromises": "check",
     "Case": "cases",
-    "StepReport": "check",
+    "StepReport": "here",
     "all_cases": "cases",
     "check_step": "check",
     "examine_step": "check",

@@ -15,8 +15,8 @@ from tactile_graph.engine.calls.isolated import START_S, Process
 from tactile_graph.engine.calls.isolated_worker import ENDED, end_with_parent, received, sent
 from tactile_graph.plugins.registry import Registry, installed, restrict, selected
 from tactile_graph.testing.cases import ORDINARY
-from tactile_graph.testing.check import StepReport, examine_step
 from tactile_graph.testing.examination import Broken
+from tactile_graph.testing.here import StepReport, examined_here
 from tactile_graph.testing.trial import IDLE
 
 READY, TRYING, DONE = "ready", "trying", "done"
@@ -42,7 +42,7 @@ class Apart:
         """Return which promises a step on offer breaks."""
         process = None if self._here else self._process or self._start()
         if process is None:
-            return examine_step(name, registry=self._registry)
+            return examined_here(name, registry=self._registry)
         process.send(name)
         at, limit_s = ORDINARY, START_S
         while True:
@@ -102,7 +102,7 @@ def serve(orders: IO[bytes], answers: IO[bytes]) -> None:
             name = received(orders)
         except EOFError:
             return
-        sent(answers, (DONE, examine_step(name, registry=registry, trying=trying)))
+        sent(answers, (DONE, examined_here(name, registry=registry, trying=trying)))
 
 
 if __name__ == "__main__":

@@ -7,47 +7,17 @@ finite answer, with a reason to skip, or with an error for people, in time.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from contextlib import closing
 from typing import Any
 
-from tactile_graph.errors import PluginError, UsageError, text_of
+from tactile_graph.errors import UsageError
+from tactile_graph.plugins.names import qualified
 from tactile_graph.plugins.registry import Registry, installed
-from tactile_graph.steps.signature import Kind
-from tactile_graph.testing.examination import Broken, examined
-from tactile_graph.testing.inputs import Maker, Makers, Unmakeable
-from tactile_graph.testing.subject import subject_of
-
-
-@dataclass(frozen=True)
-class StepReport:
-    """What became of a step's trials.
-
-    Parameters
-    ----------
-    step : str
-    broken : tuple of Broken
-    n_cases, n_values : int
-        How many cases it was tried on, and in how many of them it gave a value.
-    untried : str
-        Why it was not tried at all; "" where it was.
-    """
-
-    step: str
-    broken: tuple[Broken, ...] = ()
-    n_cases: int = 0
-    n_values: int = 0
-    untried: str = ""
-
-    def lines(self) -> list[str]:
-        """Return a line for each broken promise."""
-        return [f"step {self.step!r}: {b}" for b in self.broken]
-
-    def __str__(self) -> str:
-        if self.untried:
-            return f"step {self.step!r} was not tried: {self.untried}"
-        kept = f"step {self.step!r} keeps its promises: {self.n_values} of {self.n_cases} cases"
-        return "\n".join(self.lines()) or f"{kept} gave a value"
+from tactile_graph.testing.apart import Apart
+from tactile_graph.testing.here import StepReport, examined_here
+from tactile_graph.testing.inputs import Maker
 
 
 class BrokenPromises(AssertionError):  # noqa: N818 -- what it tells
@@ -93,9 +63,12 @@ def examine_step(
     settings: Mapping[str, Any] | None = None,
     inputs: Mapping[str, Maker] | None = None,
     registry: Registry | None = None,
-    trying: Callable[[str, float], None] = lambda case, limit_s: None,
+    trying: Callable[[str, float], None] | None = None,
 ) -> StepReport:
     """Return which promises a step breaks.
+
+    An installed one that its plugin has run in a process apart is tried in one, unless settings,
+    inputs or ``trying`` are given.
 
     Parameters
     ----------
@@ -111,15 +84,30 @@ def examine_step(
     trying : callable, optional
         Told before each call in which case it is, and how many seconds of the processor it has.
     """
-    name = step if isinstance(step, str) else getattr(step, "__name__", repr(step))
-    try:
-        subject = subject_of(step, settings or {}, registry)
-        if subject.signature.kind is Kind.SOURCE:
-            return StepReport(name, untried="a source is tried by running it")
-        found = examined(subject, Makers(registry or installed(), inputs or {}), trying)
-    except PluginError as error:
-        what = text_of(error).removeprefix(f"step {name!r}: ")
-        return StepReport(name, (Broken(("its signature",), what),))
-    except (UsageError, Unmakeable) as why:
-        return StepReport(name, untried=str(why))
-    return StepReport(name, tuple(found.broken), found.n_cases, found.n_values)
+    marked = "" if settings or inputs or trying else _marked(step, registry)
+    if not marked:
+        return examined_here(step, settings, inputs, registry, trying)
+    with closing(Apart(installed())) as apart:
+        return apart.examine(marked)
+
+
+def _marked(step: str | Callable[..., Any], registry: Registry | None) -> str:
+    """Return the name of a step that its installed plugin has run apart; "" of any other."""
+    known = installed()
+    if registry is not None and registry is not known:
+        return ""
+    for plugin in known.plugins:
+        for name in plugin.offers.get("isolated", ()):
+            spelled = known.spelled("steps", qualified(plugin.name, name))
+            of = plugin.offers["steps"][name]
+            if step in (spelled, qualified(plugin.name, name)) or _is(step, of):
+                return spelled
+    return ""
+
+
+def _is(step: str | Callable[..., Any], offered: str | Callable[..., Any]) -> bool:
+    """Return whether a step is what a plugin offers, which is not imported for that."""
+    if isinstance(offered, str):
+        module, _, name = offered.partition(":")
+        return step is getattr(sys.modules.get(module), name, offered)
+    return step is offered

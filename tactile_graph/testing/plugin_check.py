@@ -18,7 +18,7 @@ from tactile_graph.errors import (
 from tactile_graph.exporter import Exporter, Holds
 from tactile_graph.plugins.names import Plugin, qualified, singular
 from tactile_graph.plugins.registry import Registry
-from tactile_graph.testing.check import StepReport, examine_step
+from tactile_graph.testing.here import StepReport, examined_here
 
 FILES = ("pads", "presets", "scenes")
 
@@ -63,9 +63,9 @@ def examine_plugin(
     told : callable, optional
         Told what is looked at next, such as ``step 'median'``.
     examine : callable, optional
-        Tries a step by its name; `examine_step` in this process if not given.
+        Tries a step by its name; `examined_here` in this process if not given.
     """
-    examine = examine or partial(examine_step, registry=registry)
+    examine = examine or partial(examined_here, registry=registry)
     report = PluginReport(plugin)
     if plugin.error:
         report.broken.append(plugin.error)

@@ -222,7 +222,7 @@ def test_a_folder_gets_its_name_at_the_end_or_is_not_there(tmp_path: Path) -> No
         (made / "all").touch()
         assert not target.exists()
     assert [p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*")] == ["set", "set/all"]
-    told = "set: cannot be written: Directory not empty"
+    told = "set is there already: it came to be meanwhile, and stays"
     with pytest.raises(UsageError, match=told), whole_folder(target) as made:
         made.mkdir()
     assert os.listdir(tmp_path) == ["set"]

@@ -5,7 +5,11 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from typing import IO
 
+import pytest
+
+from tactile_graph import locks
 from tactile_graph.locks import Lock, is_locked, locked
 
 HOLDER = """
@@ -54,3 +58,22 @@ def test_whether_a_file_is_locked_is_told_without_making_or_keeping_it(tmp_path:
     lock = Lock(name)
     assert lock.take()
     lock.release()
+
+
+def test_a_lock_that_is_removed_while_another_takes_it_has_one_holder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name = tmp_path / "a.lock"
+    first, second, third = (Lock(name) for _ in range(3))
+    assert first.take()
+    real = locks.locked
+
+    def late(file: IO[bytes]) -> bool:
+        first.remove()  # between the opening of the file and its lock
+        return real(file)
+
+    monkeypatch.setattr(locks, "locked", late)
+    assert second.take()
+    assert not third.take()
+    second.remove()
+    assert not name.exists()

@@ -295,18 +295,20 @@ def test_ctrl_c_while_a_store_is_made_leaves_a_store_with_the_frame_in_hand(
         assert store.n_frames == 1
 
 
+@pytest.mark.parametrize("fails", ["head_line", "append"])
 def test_a_store_that_cannot_be_made_leaves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: str
 ) -> None:
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(journal, "head_line", full)
-    store = StoreWriter(tmp_path / "a.zarr")
-    with pytest.raises(UsageError, match=r"a\.zarr: cannot be written: No space"):
+    monkeypatch.setattr(journal, fails, full)
+    with (
+        pytest.raises(UsageError, match=r"a\.zarr: cannot be written: No space"),
+        StoreWriter(tmp_path / "a.zarr") as store,
+    ):
         store.write(frames(1)[0])
-    store.close()
-    assert not (tmp_path / ".a.zarr.part").exists()
+    assert [*tmp_path.iterdir()] == []
 
 
 def test_a_flipped_bit_is_never_a_value(tmp_path: Path) -> None:

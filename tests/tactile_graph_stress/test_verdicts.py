@@ -50,6 +50,21 @@ def test_an_error_raised_for_people_is_a_typed_outcome():
     assert found.note == "ValueError: radius_cm: must be > 0"
 
 
+@pytest.mark.slow
+def test_a_step_that_ends_the_process_it_runs_in_is_broken_and_tried_on():
+    trial = Trial(subject_of("aborts", registry=FAKES), registry=FAKES)
+    for _ in range(2):
+        assert trial.run(Points(XY)).broke == "ended its process by SIGABRT"
+        assert trial.run(Points(XY[:5])).value is not None
+
+
+@pytest.mark.slow
+def test_a_step_that_is_ended_at_its_time_limit_gives_up():
+    trial = Trial(subject_of("hangs", registry=FAKES), registry=FAKES)
+    for _ in range(2):
+        assert trial.run(Points(XY)).gave_up == "took longer than its 0.2 s"
+
+
 def test_a_step_that_warms_up_is_judged_by_its_first_answer():
     tare = Trial(subject_of("tare"))
     came = tare.run(Image(np.full((3, 3), 2.0)), {"n_frames": 5})

@@ -23,7 +23,7 @@ from tactile_graph_compare.output.tables import (
 from tactile_graph_compare.records.comparison import Comparison
 
 GAP = 2
-STYLES = {"better": "green", "worse": "red", "skipped": "yellow", "failed": "red"}
+STYLES = {"better": "green", "worse": "red", "skipped": "yellow", "failed": "red", "strange": "red"}
 
 
 def show(comparison: Comparison, console: Console) -> None:

@@ -197,7 +197,7 @@ def evolution_lines(evolution: Evolution) -> Iterator[str]:
 
 
 def reason_lines(comparison: Comparison, most: int = 3) -> Iterator[tuple[str, str]]:
-    """Yield ``skipped`` or ``failed``, and where and why; the most frequent of each variant."""
+    """Yield ``skipped``, ``failed`` or ``strange``, where and why; the most frequent of each."""
     for v in comparison.variants:
         for state, output, origin, reason, n in v.reasons[:most]:
             at = f"{origin}: " if origin not in ("", output) else ""

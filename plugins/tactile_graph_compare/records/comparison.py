@@ -37,10 +37,11 @@ class Variant:
     times : Times
     timeline : Timeline
     n_ok, n_skipped, n_failed : int
-        Frames in which all outputs came out, some were skipped, some failed.
+        Frames in which all outputs came out, as finite numbers, some were skipped, some failed.
     reasons : tuple
         (``skipped`` or ``failed``, output, origin, reason of the first, number of frames), most
-        frequent first.
+        frequent first. Of numbers that are not finite it is ``strange``, with the number's name as
+        the origin.
     """
 
     label: str

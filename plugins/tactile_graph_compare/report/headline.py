@@ -151,6 +151,6 @@ def warnings(comparison: Comparison) -> Iterator[Html]:
 def _silent(variant: Variant, n_frames: int) -> bool:
     """Return whether every output was skipped or failed in every frame."""
     without = dict.fromkeys(variant.asked, 0)
-    for _, output, _, _, n in variant.reasons:
-        without[output] += n
+    for state, output, _, _, n in variant.reasons:
+        without[output] += n if state != "strange" else 0
     return n_frames > 0 and all(n == n_frames for n in without.values())

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph import Result
-from tactile_graph.inspect import Failed, Plan, Ref, Skipped, gaps
+from tactile_graph.inspect import NO_VALUE, Failed, Plan, Ref, Skipped, gaps, scalars
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.records.comparison import FrameTable
 from tactile_graph_compare.records.graph import state_of
@@ -94,13 +95,30 @@ class VariantLog:
         kinds = {outcome.__class__ for found in lacking.values() for outcome in found}
         self.n_failed += Failed in kinds
         self.n_skipped += Skipped in kinds and Failed not in kinds
-        self.n_ok += not kinds
+        strange = [*self._strange(outcomes)]
+        self.n_ok += not kinds and not strange
+        for name, key, number in strange:
+            told = [f"{number}, which is no answer", 0]
+            self.reasons.setdefault(("strange", name, key), told)[1] += 1
         for name, found in lacking.items():
             # Several items of one frame that lack for one reason count as one.
             for outcome in {(o.__class__, o.origin): o for o in reversed(found)}.values():
                 word = "failed" if outcome.__class__ is Failed else "skipped"
                 first = [outcome.reason.partition("\n")[0], 0]
                 self.reasons.setdefault((word, name, outcome.origin), first)[1] += 1
+
+    def _strange(self, outcomes: Mapping[str, Any]) -> Iterator[tuple[str, str, float]]:
+        """Yield each number of an output that is not finite: the output, its name, the number."""
+        for name, outcome in outcomes.items():
+            if outcome.__class__ in NO_VALUE:
+                continue
+            try:
+                told = scalars(name, outcome)
+            except Exception:  # a plugin's own code, of which nothing is compared
+                continue
+            for key, number in told.items():
+                if isinstance(number, float) and not math.isfinite(number):
+                    yield name, key, number
 
 
 class MergedLog:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -47,7 +48,9 @@ def found_in(answers: Answers, outcomes: Outcomes) -> Found:
         place, value = answers.placed(outcomes)
         many = place.many
         if value.__class__ not in NO_VALUE:
-            things = tuple(place.thing(item) for item in with_value(place.items(value)))
+            found = (place.thing(item) for item in with_value(place.items(value)))
+            # A place that is not finite is no answer.
+            things = tuple(t for t in found if math.isfinite(t.x_cm) and math.isfinite(t.y_cm))
     name = answers.named(outcomes) if answers.identities else ""
     return Found(things, many, answers.counted(outcomes), name)
 
@@ -129,7 +132,7 @@ class Agreeing:
         for i, j in pairs:
             mine, theirs = one.things[i], other.things[j]
             for quantity, off in errors_against(mine, theirs).items():
-                if quantity in self.differences:
+                if quantity in self.differences and math.isfinite(off):
                     self.differences[quantity].add(position, off)
             centres.offsets.append((mine.x_cm - theirs.x_cm, mine.y_cm - theirs.y_cm))
         centres.n_only_variant += len(one.things) - len(pairs)

@@ -144,9 +144,12 @@ class Scorer:
     def _compare(self, position: int, number: int, true: TrueObject, thing: Any) -> None:
         errors = errors_against(thing, true.shape)
         for name in self._of(true):
-            self.errors[name].add(position, number, errors.get(name, math.nan))
+            error = errors.get(name, math.nan)
+            # What is not finite is no answer.
+            self.errors[name].add(position, number, error if math.isfinite(error) else math.nan)
         offset = (thing.x_cm - true.shape.x_cm, thing.y_cm - true.shape.y_cm)
-        self.errors["centre"].offsets.append(offset)
+        if math.isfinite(errors["centre"]):
+            self.errors["centre"].offsets.append(offset)
 
     # -- how many, and which --------------------------------------------------------------------
 

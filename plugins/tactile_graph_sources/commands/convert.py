@@ -175,6 +175,9 @@ class _Carried:
             self.interrupted = True
 
     def watch(self, frames: Iterator[Frame]) -> Iterator[Frame]:
+        from tactile_graph_sources.readers.words.truth import own_shapes
+        from tactile_graph_sources.writers.recording_writer import OWN_SHAPES
+
         for frame in frames:
             for name, there in (
                 ("truth", frame.truth is not None),
@@ -182,6 +185,7 @@ class _Carried:
                 ("gaps", frame.gap),
                 ("doubts", frame.doubtful),
                 ("labels", bool(frame.label)),
+                (OWN_SHAPES, bool(own_shapes(frame.truth))),
             ):
                 if there:
                     self.names[name] = None

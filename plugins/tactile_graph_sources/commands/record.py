@@ -217,6 +217,8 @@ def _keep(frames: Iterator[Frame], store: StoreWriter, again: Callable[[], None]
 
 def _tell(store: StoreWriter, report: Report, by_port: bool) -> None:
     """Say what is written, and what the link was like, leaving out what is as it should be."""
+    from tactile_graph_sources.writers.recording_writer import OWN_SHAPES
+
     n = store.n_written
     if n == store.n_before:
         came = report.counts["good frames"] + report.counts["frames"]
@@ -227,6 +229,8 @@ def _tell(store: StoreWriter, report: Report, by_port: bool) -> None:
             say(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
         return
     say(f"{store.path}: {n} frame{'s' if n != 1 else ''}")
+    if store.own_shapes:
+        say(f"  left out: {OWN_SHAPES} ({', '.join(store.own_shapes)})", err=True)
     names = [n for n in sorted(report.counts) if n not in UNTOLD]
     for name in names:
         say(f"  {name}: {report.counts[name]}", err=True)

@@ -15,7 +15,7 @@ from tactile_graph.locks import Lock
 class SoleWriter:
     """The right to write to a store, which one process at a time has.
 
-    Two files stand beside the store, hidden: the lock, which stays, and who holds it.
+    Two files stand beside the store, hidden: the lock, which stays with it, and who holds it.
     """
 
     def __init__(self, path: Path) -> None:
@@ -51,4 +51,7 @@ class SoleWriter:
         """Give it back."""
         if self._lock.held:
             self._holder.unlink(missing_ok=True)
-            self._lock.release()
+            if self.path.exists():
+                self._lock.release()
+            else:
+                self._lock.remove()

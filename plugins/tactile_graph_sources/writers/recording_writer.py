@@ -8,6 +8,9 @@ from typing import NamedTuple
 
 from tactile_graph.wires import Frame
 
+OWN_SHAPES = "truth of plugins' own shapes"
+"""What a recording loses that has a place for the truth, but only of shapes that all know."""
+
 
 class RecordingWriter(NamedTuple):
     """How frames become a recording of one kind.
@@ -20,7 +23,8 @@ class RecordingWriter(NamedTuple):
         Raises `DataError` for frames that have no place in it, `UsageError` if it cannot write.
     loses : tuple of str
         What of a frame has no place in it: ``"truth"``, ``"device time"``, ``"gaps"``,
-        ``"doubts"``, ``"labels"``.
+        ``"doubts"``, ``"labels"``; `OWN_SHAPES` where other truth has: of a frame with such a shape
+        none is written.
     """
 
     write: Callable[[Path, Iterator[Frame], str], int]

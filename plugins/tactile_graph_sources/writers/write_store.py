@@ -17,7 +17,7 @@ from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import put_on_disc, said, uninterrupted, whole_folder
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
-from tactile_graph_sources.readers.words.truth import truth_to_json
+from tactile_graph_sources.readers.words.truth import own_shapes, truth_to_json
 from tactile_graph_sources.stores import journal
 from tactile_graph_sources.stores.layout import (
     COLUMNS,
@@ -34,7 +34,7 @@ from tactile_graph_sources.stores.layout import (
 from tactile_graph_sources.stores.repairing import adopt, cut, notes_end
 from tactile_graph_sources.stores.sole_writer import SoleWriter
 from tactile_graph_sources.stores.stored import UNSURE, Lost, open_stored
-from tactile_graph_sources.writers.recording_writer import RecordingWriter
+from tactile_graph_sources.writers.recording_writer import OWN_SHAPES, RecordingWriter
 
 CHUNK = 256
 SMALL_CHUNKS = 16
@@ -98,6 +98,8 @@ class StoreWriter:
         self.chunk = chunk
         self.about = dict(about or {})
         self.n_written = 0
+        self.own_shapes: dict[str, None] = {}
+        """Types of plugins' own that true shapes were of; the truth of such frames is left out."""
         self._zarr = load_zarr()
         self._metadata: Mapping[str, Metadata] = {}
         self._attributes: Mapping[str, Any] = {}
@@ -105,6 +107,7 @@ class StoreWriter:
         self._held: list[Frame] = []
         self._marks_gap = False
         self._notes_end = 0
+        self._is_new = False
         if self.path.exists() and not append:
             raise UsageError(f"{self.path} is there already; append to it, or choose another name")
         self._sole = SoleWriter(self.path)
@@ -130,7 +133,7 @@ class StoreWriter:
         self.close()
 
     def close(self) -> None:
-        """Write what is held, and let others write to the store.
+        """Write what is held, and let others write to the store; a new one without a frame goes.
 
         A first Ctrl-C waits meanwhile: what is held would be lost.
         """
@@ -138,6 +141,8 @@ class StoreWriter:
             with uninterrupted(once=True):
                 self.flush()
         finally:
+            if self._is_new and not self.n_written:
+                shutil.rmtree(self.path, ignore_errors=True)
             self._sole.release()
 
     @property
@@ -156,6 +161,7 @@ class StoreWriter:
             If a chunk cannot be written.
         """
         grid = _grid(frame.image)
+        self.own_shapes |= dict.fromkeys(own_shapes(frame.truth))
         if not self._metadata:
             with uninterrupted():  # a store without the frame it was made for is none
                 self._create(grid)
@@ -184,6 +190,7 @@ class StoreWriter:
             try:
                 self._metadata = self._make(part, attributes)
                 part.rename(self.path)
+                self._is_new = True
                 put_on_disc(self.path / JOURNAL, self.path.parent)
             except BaseException:
                 shutil.rmtree(part, ignore_errors=True)
@@ -321,7 +328,7 @@ def _note(frame: Frame) -> bytes:
         note["label"] = frame.label
     if frame.state_of is not None:
         note["state_of"] = frame.state_of
-    if frame.truth is not None:
+    if frame.truth is not None and not own_shapes(frame.truth):
         note["truth"] = truth_to_json([frame.truth])
     return json.dumps(note).encode() if note else b""
 
@@ -340,4 +347,4 @@ def _converted(path: Path, frames: Iterator[Frame], about: str) -> int:
     return store.n_frames
 
 
-WRITER = RecordingWriter(_converted)
+WRITER = RecordingWriter(_converted, (OWN_SHAPES,))

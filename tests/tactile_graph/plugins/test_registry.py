@@ -201,6 +201,21 @@ def test_a_hook_that_raises_or_is_not_known_is_reported() -> None:
     assert found.names("steps") == ["step"]
 
 
+def test_a_plugin_that_answers_a_hook_twice_offers_both() -> None:
+    def more(name: str, hook: str) -> tuple[str, Callable[[], types.ModuleType]]:
+        loader = plugin(steps={"a": step})
+        mark = hookimpl(specname=f"tactile_graph_{hook}")
+        vars(loader())["more"] = mark(_returning({name: step}))
+        return "twice", loader
+
+    assert offered(more("b", "steps")).names("steps") == ["a", "b"]
+    found = offered(more("a", "steps"), GOOD)
+    assert found.plugins[0].error == "hook tactile_graph_steps: 'a' is offered twice"
+    assert found.names("steps") == ["step"]
+    told = "unknown hook 'tactile_graph_stpes'; did you mean 'tactile_graph_steps'?"
+    assert offered(more("b", "stpes")).plugins[0].error == told
+
+
 def test_a_hook_without_its_mark_is_reported() -> None:
     module = types.ModuleType("bare")
     module.tactile_graph_steps = lambda: {"a": "b:c"}  # type: ignore[attr-defined]

@@ -10,7 +10,7 @@ import pytest
 
 from tactile_graph.cli.plugin_check import show_checked
 from tactile_graph.plugins import registry
-from tactile_graph.testing import apart
+from tactile_graph.testing import apart, examine_step
 from tactile_graph.testing.apart import Apart
 
 pytestmark = pytest.mark.slow
@@ -79,6 +79,12 @@ def test_a_step_that_ends_its_process_or_never_returns_costs_its_own_trial(
         f"  step 'ends': {case}: ended its process with code 3",
         f"  step 'never_returns': {case}: was stopped, since it had not ended after 2 s",
     ]
+
+
+def test_a_step_that_its_plugin_has_run_apart_is_examined_apart(found: registry.Registry) -> None:
+    told = "step 'ends': an image without cells: ended its process with code 3"
+    for step in ("ends", "rough.ends", found.load("steps", "ends")):
+        assert str(examine_step(step)) == told
 
 
 def test_steps_of_a_registry_that_is_not_what_is_installed_are_tried_here(

@@ -14,7 +14,7 @@ from tactile_graph import Circle, Ellipse, Frame, Image, load, loads
 from tactile_graph.errors import PluginError, RuleError, UsageError
 from tactile_graph.wires import TrueObject
 from tactile_graph_compare import compare
-from tactile_graph_compare.output.tables import heading
+from tactile_graph_compare.output.tables import heading, reason_lines
 from tactile_graph_compare.records.comparison import SettingChange
 from tactile_graph_compare.records.graph import STATES
 from tactile_graph_compare.run.frame_choice import FrameChooser
@@ -236,6 +236,22 @@ def test_steps_are_held_to_what_they_promise():
     pipeline = loads(text, registry=registry({**STEPS, "liar": liar}))
     with pytest.raises(PluginError, match="promises Circle, but gave Image"):
         compare([pipeline], [Frame.of(np.ones((2, 2)))])
+
+
+def test_a_number_that_is_not_finite_is_told_and_its_frame_is_not_ok():
+    def first(image: Image) -> Circle:
+        return Circle(1.0 / image.values[0, 0] if image.values[0, 0] else math.nan, 1.0, 1.0)
+
+    text = "pipeline: p\nnodes: {a: {step: first, in: frame}}\noutputs: [a]"
+    pipeline = loads(text, registry=registry({**STEPS, "first": first}))
+    frames = [Frame.of(np.full((2, 2), value), index=k) for k, value in enumerate((0.0, 1.0))]
+    found = compare([pipeline], frames)
+    (variant,) = found.variants
+    assert (variant.n_ok, variant.n_skipped, variant.n_failed) == (1, 0, 0)
+    assert variant.reasons == (("strange", "a", "a.x_cm", "nan, which is no answer", 1),)
+    assert [*reason_lines(found)] == [
+        ("strange", "p, a in 1 frame: a.x_cm: nan, which is no answer")
+    ]
 
 
 def test_provenance_tells_every_variant_with_all_its_settings():

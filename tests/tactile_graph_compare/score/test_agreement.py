@@ -106,6 +106,15 @@ def test_what_is_skipped_or_failed_is_no_answer(outcome: Any) -> None:
     assert found_in(answers, lambda ref: outcome) == Found()
 
 
+def test_what_is_not_finite_is_no_answer() -> None:
+    answers = Answers((PLACES,), (), ())
+    assert found_in(answers, lambda ref: Circle(math.nan, 1.0, 1.0)) == Found()
+    got = agreed(("centre", "radius"), (one(Circle(1, 1, math.nan)), one(Circle(1, 2, 3))),
+                 (one(Circle(1, 1, 4)), one(Circle(1, 1, 3))))  # fmt: skip
+    assert got["centre"].differences.tolist() == [1.0, 0.0]
+    assert got["radius"].differences.tolist() == [1.0]
+
+
 def test_things_counts_and_names_are_found() -> None:
     disc = Circle(1, 1, 1)
     values = {"c": [disc, FAILED], "n": [1, 2], "who": SimpleNamespace(known=True, name="mug")}

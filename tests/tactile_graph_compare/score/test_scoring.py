@@ -15,6 +15,7 @@ from tactile_graph.wires import TrueObject
 from tactile_graph_compare.score.answers import Answers, Places, answers_of
 from tactile_graph_compare.score.quantities import quantities_of
 from tactile_graph_compare.score.scoring import NOBODY, Scorer
+from tactile_graph_compare.score.statistics import score_of
 
 DISC = TrueObject(Circle(3.0, 4.0, 2.0), name="disc")
 SLAB = TrueObject(Rectangle(10.0, 4.0, 6.0, 2.0, math.radians(89.0)), name="slab")
@@ -83,6 +84,16 @@ def test_no_answer_is_missing_for_what_was_there_and_right_where_nothing_was(out
         "centre": [(0, None)], "radius": [(0, None)]}  # fmt: skip
     assert told(scored(answers, frame(DISC, DISC), c=outcome))["centre"] == [(NOBODY, None)]
     assert told(scored(answers, frame(), c=outcome)) == {}
+
+
+@pytest.mark.parametrize("x_cm", [math.nan, math.inf])
+def test_a_place_that_is_not_finite_is_no_answer_and_moves_no_bias(x_cm):
+    answers = Answers((places("c", Circle),), (), ())
+    scorer = scored(answers, frame(DISC), c=Circle(x_cm, 4.0, 2.5))
+    scorer.add(8, frame(DISC), lambda ref: Circle(4.0, 4.0, 2.0))
+    assert told(scorer) == {"centre": [(0, None), (0, 1.0)], "radius": [(0, 0.0), (0, 0.5)]}
+    score = score_of("v", "centre", "cm", scorer.errors["centre"])
+    assert (score.mean, score.bias, score.n_missing) == (1.0, 1.0, 1)
 
 
 def test_an_answer_where_nothing_lies_is_extra():

@@ -51,6 +51,25 @@ def test_there_and_back_again_nothing_is_lost(tmp_path: Path, made: list[Frame])
             assert a.image.pitch_cm == b.image.pitch_cm
 
 
+@pytest.mark.parametrize("ending", [".npz", ".zarr"])
+def test_frames_with_a_true_shape_of_a_plugins_own_are_kept_without_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ending: str
+) -> None:
+    class Stroke(Circle):
+        pass
+
+    circle = TrueObject(Circle(1.0, 2.0, 3.0))
+    truths = [(circle, TrueObject(Stroke(1.0, 2.0, 3.0))), (circle,)]
+    given = [Frame.of(np.ones((2, 2)), index=k, truth=truth) for k, truth in enumerate(truths)]
+    monkeypatch.setattr("tactile_graph_sources.commands.convert._frames", lambda *_: iter(given))
+    said = run("--source", "simulate", tmp_path / f"a{ending}")
+    told = f"left out, as a {ending} has no place for it: truth of plugins' own shapes\n"
+    assert said.endswith(told)
+    read = recording(path=tmp_path / f"a{ending}", report=Report())
+    assert [f.truth for f in read] == [None, (circle,)]
+    assert [p.name for p in tmp_path.iterdir()] == [f"a{ending}"]
+
+
 def test_of_many_troubles_the_first_are_told_and_how_many_there_are(tmp_path: Path) -> None:
     lines = [",".join(["1"] * 64), *["1,2,3"] * 12, ",".join(["2"] * 64)]
     (tmp_path / "a.csv").write_text("\n".join([*[lines[0]] * 20, *lines]))

@@ -17,6 +17,7 @@ from click.testing import CliRunner
 from helpers_serial import KITS, FakePad
 from tactile_graph import Frame
 from tactile_graph.cli import cli
+from tactile_graph.wires import Circle, TrueObject
 from tactile_graph_sources.devices.port import Port
 from tactile_graph_sources.devices.reader import Reader
 from tactile_graph_sources.store import read_store
@@ -339,3 +340,17 @@ def test_a_silent_pad_ends_in_time_and_is_told(tmp_path: Path, pad: FakePad) -> 
     assert result.exit_code == 2
     assert "no frame came, and nothing was written" in result.output
     assert not (tmp_path / "a.zarr").exists()
+
+
+def test_frames_with_a_true_shape_of_a_plugins_own_are_kept_without_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Stroke(Circle):
+        pass
+
+    frame = Frame.of(np.ones((2, 2)), truth=(TrueObject(Stroke(1.0, 2.0, 3.0)),))
+    monkeypatch.setattr("tactile_graph_sources.commands.record._frames", lambda *_: iter([frame]))
+    result = CliRunner().invoke(cli, ["record", str(tmp_path / "a.zarr"), "--source", "simulate"])
+    assert result.exit_code == 0
+    assert result.output.endswith("  left out: truth of plugins' own shapes (Stroke)\n")
+    assert [f.truth for f in read_store(tmp_path / "a.zarr")] == [None]

@@ -40,11 +40,22 @@ MOST_SHOWN = 60
 Truth = tuple[TrueObject, ...] | None
 
 
+def own_shapes(truth: Truth) -> list[str]:
+    """Return the types of true shapes that are a plugin's own: there is no JSON of them."""
+    return [type(o.shape).__name__ for o in truth or () if not _kind(o.shape)]
+
+
+def _kind(shape: Shape | Measured) -> str:
+    if isinstance(shape, Polygon):
+        return "polygon"
+    return next((kind for kind, (of, _) in _FIELDS.items() if type(shape) is of), "")
+
+
 def _shape_to_json(shape: Shape | Measured) -> dict[str, Any]:
     if isinstance(shape, Polygon):
         return {"kind": "polygon", "xy_cm": shape.xy_cm.tolist()}
-    kind = type(shape).__name__.lower()
-    if kind not in _FIELDS:
+    kind = _kind(shape)
+    if not kind:
         told = one_of([*_FIELDS, "polygon"])
         raise UsageError(f"a true {type(shape).__name__} cannot be written; what can is: {told}")
     return {"kind": kind, **{f: float(getattr(shape, f)) for f in _FIELDS[kind][1]}}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.errors import UsageError
 from tactile_graph.wires import Circle
 from tactile_graph_pads.calibration.calibration import Calibration
 from tactile_graph_pads.calibration.fit import calibrated
@@ -131,8 +132,17 @@ def weighed_g(curve: Calibration, readings: Array) -> float:
 
 
 def put_down(bench: Bench, radius_cm: float, weight_g: float) -> Array:
-    """Return one reading of a disc put down anew, fully on the pad."""
+    """Return one reading of a disc put down anew, fully on the pad.
+
+    Raises
+    ------
+    UsageError
+        If it does not fit on the pad.
+    """
     width, height = bench.pad.geometry.size_cm
+    if min(width, height) - radius_cm < radius_cm:
+        disc_of = f"a disc of {radius_cm:g} cm radius"
+        raise UsageError(f"{disc_of} does not fit on the pad of {width:g} by {height:g} cm")
     x, y = (float(bench.rng.uniform(radius_cm, side - radius_cm)) for side in (width, height))
     dx, dy = bench.rng.normal(0.0, STACK_CM, 2)
     disc = Circle(x, y, radius_cm)

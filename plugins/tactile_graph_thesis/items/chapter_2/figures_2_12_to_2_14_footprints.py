@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.errors import UsageError
 from tactile_graph.wires import Circle
 from tactile_graph_pads.calibration.plot import new_figure
 from tactile_graph_pads.contact import Contact, Grain
@@ -57,7 +58,18 @@ def bump(pad: Pad, rng: np.random.Generator) -> Footprints:
     pad : Pad
     rng : numpy.random.Generator
         Draws the unevenness, the same for both, and the noise.
+
+    Raises
+    ------
+    UsageError
+        If the grain's element is not on the pad.
     """
+    rows, columns = pad.geometry.shape
+    if GRAIN.row >= rows or GRAIN.column >= columns:
+        raise UsageError(
+            f"the grain's element ({GRAIN.row}, {GRAIN.column}) is not on the pad of {rows} rows "
+            f"and {columns} columns"
+        )
     centre = _centre_of(pad, GRAIN)
     return _compare(pad, replace(pad.contact, sand=(GRAIN,)), Circle(*centre, 2.5), 2000.0, rng)
 

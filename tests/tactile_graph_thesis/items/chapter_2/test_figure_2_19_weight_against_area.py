@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
+from tactile_graph.errors import UsageError
+from tactile_graph_pads.geometry import Geometry
 from tactile_graph_pads.pad import load_pad
 from tactile_graph_thesis.items.chapter_2.figure_2_19_weight_against_area import (
     PRESSURES_G_CM2,
     Weighings,
+    put_down,
     table_2_2_radii_cm,
     weight_area,
 )
+from tactile_graph_thesis.measure.bench import Bench
 
 
 @cache
@@ -71,3 +76,12 @@ def test_objects_stand_under_equal_pressures() -> None:
 def test_at_one_weight_the_curve_without_decoupling_always_reads_too_little() -> None:
     found = weighed("plain", 0)
     assert (found.error_percent(found.coupled_g) < 0.0).all()
+
+
+def test_an_object_that_does_not_fit_on_the_pad_is_told() -> None:
+    flat = replace(load_pad("plain"), geometry=Geometry(5, 40, 0.8, 0.45))
+    bench = Bench(flat, np.random.default_rng(0))
+    told = "a disc of 3 cm radius does not fit on the pad of 49.55 by 5.8 cm"
+    with pytest.raises(UsageError, match=told):
+        put_down(bench, 3.0, 100.0)
+    assert put_down(bench, 2.9, 100.0).shape == (5, 40)

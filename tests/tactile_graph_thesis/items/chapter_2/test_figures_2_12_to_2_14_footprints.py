@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from tactile_graph.errors import UsageError
+from tactile_graph_pads.geometry import Geometry
 from tactile_graph_pads.pad import load_pad
 from tactile_graph_thesis.items.chapter_2.figures_2_12_to_2_14_footprints import (
     GRAIN,
@@ -32,6 +36,12 @@ def test_the_weight_stays_the_same_and_most_of_it_goes_to_the_grain() -> None:
 def test_the_disc_without_sand_does_not_rest_on_one_element() -> None:
     found = bump(load_pad("plain"), rng())
     assert found.before_g.max() < 0.2 * 2000.0
+
+
+def test_a_pad_without_the_grains_element_is_told() -> None:
+    flat = replace(load_pad("plain"), geometry=Geometry(5, 40, 0.8, 0.45))
+    with pytest.raises(UsageError, match="not on the pad of 5 rows and 40 columns"):
+        bump(flat, rng())
 
 
 def test_foam_keeps_the_weight_and_reaches_beyond_the_disc() -> None:
