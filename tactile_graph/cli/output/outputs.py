@@ -87,7 +87,8 @@ class Output:
         with self._named("opened"):
             writer = self.exporter.opened(export)
         ours = self.name != "-" or installed().offer(OFFERS, self.ending).plugin.name == CORE
-        return _Named(writer, self._named if ours else self._on_stdout), table
+        named = _Named(writer, self._named) if ours else _OnStdout(writer, self._on_stdout)
+        return named, table
 
     @contextmanager
     def _on_stdout(self, what: str) -> Iterator[None]:
@@ -200,3 +201,12 @@ def _ending(name: str, form: str | None) -> str:
     raise UsageError(
         f"-o {name}: its name must end in {', '.join(known)}, or give --format{near}{missing}"
     )
+
+
+class _OnStdout(_Named):
+    """A writer that took stdout for itself."""
+
+    def write(self, result: Result) -> None:
+        """Take in a frame."""
+        with self._named("write"):
+            self._writer.write(result)
