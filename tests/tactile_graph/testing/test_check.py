@@ -271,7 +271,8 @@ SEVERAL = (writes, loses_a_row, hands_nan_on)
 def test_what_is_broken_is_told_in_a_line(
     step: Callable[..., Any], told: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(trials, "LEAST_S", 0.05)
+    if step is never_ends:
+        monkeypatch.setattr(trials, "LEAST_S", 0.05)  # which a busy machine may take for the others
     with pytest.raises(BrokenPromises) as caught:
         check_step(step)
     lines = str(caught.value).splitlines()
