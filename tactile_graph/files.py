@@ -13,7 +13,7 @@ import stat
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
@@ -158,6 +158,29 @@ def uninterrupted(once: bool = False) -> Iterator[list[int]]:
             signal.signal(number, handler)
         if waiting:
             before[waiting[0]](waiting[0], None)
+
+
+def lies_beside(file: Name, settings: Mapping[str, Any], message: str) -> str:
+    """Return a hint where a file that is missed lies in the folder of the file that names it.
+
+    Parameters
+    ----------
+    file : path
+        The pipeline file. What ``use`` names is looked for in its folder, other files are not.
+    settings : mapping
+        Of the step that misses the file.
+    message : str
+        What it says.
+    """
+    for name in settings.values():
+        if isinstance(name, str | Path) and Path(name).suffix and str(name) in message:
+            there = Path(file).parent / name
+            if not os.path.exists(name) and os.path.exists(there):
+                return (
+                    "; files that settings name are looked for from the current folder: "
+                    f"did you mean {str(there)!r}?"
+                )
+    return ""
 
 
 @contextmanager

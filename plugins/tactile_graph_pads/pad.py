@@ -259,6 +259,9 @@ def read_file(path: Path, what: str) -> Document:
     """
     try:
         text = text_of_file(path)
-    except (OSError, UnicodeDecodeError) as error:
+    except OSError as error:
+        why = error.strerror or error
+        raise UsageError(f"{path}: this {what} file cannot be read: {why}") from error
+    except UnicodeDecodeError as error:
         raise UsageError(f"{path}: this {what} file cannot be read: {error}") from error
     return read_document(text, str(path))

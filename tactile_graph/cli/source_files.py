@@ -9,6 +9,7 @@ from typing import Any
 from tactile_graph.cli.file_kinds import file_kind
 from tactile_graph.engine.calls.sources import open_source
 from tactile_graph.errors import PipelineError, Problem, TactileGraphError
+from tactile_graph.files import lies_beside
 from tactile_graph.pipeline.graph import Source
 from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.injected import Report
@@ -63,7 +64,8 @@ def _of_record(found: Registry, source: Source, name: str, value: str) -> Iterat
             told = problem.message if problem.mark else f"source, {name}: {problem.message}"
             yield Problem(mark, told, problem.snippet)
     except TactileGraphError as error:
-        yield Problem(source.mark, f"source, {name}: {error}")
+        hint = lies_beside(source.mark.file, source.settings, str(error))
+        yield Problem(source.mark, f"source, {name}: {error}{hint}")
 
 
 def _of_recording(source: Source, setting: str) -> Iterator[Problem]:

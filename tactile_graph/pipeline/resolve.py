@@ -9,6 +9,7 @@ from typing import Any
 from numpy.random import default_rng
 
 from tactile_graph.errors import PluginError, Problem, TactileGraphError, UsageError
+from tactile_graph.files import lies_beside
 from tactile_graph.pipeline.bind import bind_inputs
 from tactile_graph.pipeline.checks import check_conditions, check_fields_read, check_overrides
 from tactile_graph.pipeline.conditions import Guard, compile_condition
@@ -231,7 +232,8 @@ def _made(scope: Scope, declared: NodeDeclaration, node: Node) -> Node:
     except Exception as error:  # a constructor may raise anything about its settings
         told = isinstance(error, TactileGraphError | ValueError) and str(error)
         text = told or f"step {declared.step!r} cannot be made: {why(error)}"
-        scope.problem(declared, f": {text}", "with")
+        hint = lies_beside(scope.document.file, declared.settings, str(text))
+        scope.problem(declared, f": {text}{hint}", "with")
         return node
     _rules(scope, declared, *quantity_troubles(made, scope.facts, scope.frames))
     return made

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from helpers_cli import call
 from helpers_serial import KITS, FakePad, Kit
 from tactile_graph import Frame, loads
 from tactile_graph.errors import DataError, UsageError
@@ -378,3 +379,19 @@ def test_circle_3_follows_a_disc_on_a_live_pad_through_an_unplugging(
     assert [i for i, r in enumerate(results) if r.frame.gap] == [n - HELD]
     assert report.counts["good frames"] == 2 * (n - HELD)
     assert report.counts["reconnects"] == 1
+
+
+@pytest.mark.slow
+def test_a_run_on_a_pad_that_sends_no_frame_is_not_done(
+    tmp_path: Path, pad: FakePad, opened: threading.Event
+) -> None:
+    """As `record` ends, too."""
+    out = tmp_path / "out.csv"
+    words = [f"port={pad.link}", "preset=fsr-8x8", "seconds=0.5", "n_frames=3"]
+    source = ["--source", "serial", *(w for word in words for w in ("--with", word))]
+    with played(opened, lambda: pad.send(b"ready\n")):
+        result = call("run", "contacts", *source, "-o", out)
+    assert result.exit_code == 2
+    told = "source 'serial': no frame came, and nothing was written (6 bytes, 6 discarded bytes)"
+    assert told in result.stderr
+    assert not out.exists()

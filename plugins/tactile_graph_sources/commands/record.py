@@ -6,6 +6,7 @@ import shlex
 import sys
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping
+from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -110,7 +111,7 @@ def record(
     store: StoreWriter | None = None
     with Interrupts() as interrupts:
         try:
-            about = {"preset": preset or "", "pad": pad, "port": port or f"source {source}"}
+            about = _about(preset, pad, port or f"source {source}")
             with StoreWriter(target, chunk, append, about) as store:
                 kept = frames if give_up is None else _until_gone(frames, gone)
                 _keep(kept, store, interrupts.again)
@@ -134,6 +135,20 @@ def record(
         say(f"given up: {why}", err=True)
     if store is None or store.n_written == store.n_before:
         click.get_current_context().exit(NOT_DONE)
+
+
+def _about(preset: str | None, pad: str, port: str) -> dict[str, Any]:
+    """Return what is kept with the recording, the preset by content too: its file may change."""
+    told: dict[str, Any] = {"preset": preset or "", "pad": pad, "port": port}
+    if preset is None:
+        return told
+    from tactile_graph.errors import TactileGraphError
+    from tactile_graph_sources.devices.preset import meaning_of
+    from tactile_graph_sources.devices.preset_file import load_preset
+
+    with suppress(TactileGraphError):  # the device says so, where it knows no such preset either
+        told["meaning"] = meaning_of(load_preset(preset))
+    return told
 
 
 def _until_gone(frames: Iterator[Frame], gone: list[DataError]) -> Iterator[Frame]:

@@ -111,8 +111,9 @@ class Pieces:
         """Drop a frame in the making."""
         if self._held is not None or self._ever:
             self._lost = True
-        if self._held is not None and self._ever:
-            self.counts.bad["incomplete"] += 1
+        if self._held is not None:
+            self.counts.bad["incomplete"] += self._ever
+            self.counts.discarded_pieces += len(self._held.cells)
         self._held = None
 
     def _run(self, piece: Units, out: list[Assembled]) -> None:
@@ -126,7 +127,9 @@ class Pieces:
         if n == 0:
             # Before a frame starts nothing needs keeping; the last piece may hold its beginning.
             self._held = held if total > skip else None
+            self.counts.discarded_pieces += 0 if total > skip else len(held.cells)
             return
+        self.counts.discarded_pieces += skip // m
         flat = held.cells.reshape(-1)[skip : skip + n * self.n_cells]
         last = (skip + self.n_cells * np.arange(1, n + 1) - 1) // m
         first = (skip + self.n_cells * np.arange(n)) // m
@@ -174,15 +177,18 @@ def _joined(a: Units, b: Units) -> Units:
 class BetweenSilences:
     """Rows without a number: those between two silences are a frame if there are just enough."""
 
-    def __init__(self, n_rows: int, counts: LinkCounts) -> None:
+    def __init__(self, n_rows: int, silence_s: float, counts: LinkCounts) -> None:
         self.n_rows = n_rows
+        self.silence_s = silence_s
         self.counts = counts
         self._rows: list[NDArray[Any]] = []
+        self._n = 0
         self._end = 0
         self._open = False
         self._hurt = False
         self._lost = False
         self._ever = False
+        self._hint = ""
 
     def feed(self, units: Units) -> list[Assembled]:
         """Take rows; a silence, or a line that is no data, closes a frame."""
@@ -194,27 +200,42 @@ class BetweenSilences:
             self._open = True
         self._hurt |= units.broken
         self._end = int(units.ends[-1])
+        self._n += len(units.cells)
         self._rows.extend(units.cells[: self.n_rows + 1])
-        if len(self._rows) > self.n_rows:
+        if self._n > self.n_rows:
             self._hurt = True  # too long already: keep no more of it
             del self._rows[1:]
         return out
 
+    def hint(self) -> str:
+        """Return what the count of rows says about why no frame is found; may be empty."""
+        if self._n <= self.n_rows:
+            return self._hint
+        return (
+            f"{self._n} rows came without a pause of {self.silence_s:g} s (key 'silence_s'), an "
+            f"empty line or a line without data between them; a frame has {self.n_rows}"
+        )
+
     def _flush(self) -> list[Assembled]:
         rows, self._rows = self._rows, []
+        n, self._n = self._n, 0
         hurt, self._hurt = self._hurt, False
-        if not self._open or (not rows and not hurt):
-            return []
-        if hurt or len(rows) != self.n_rows:
+        if self._open and n == self.n_rows and not hurt:
+            self._ever = True
+            self._hint = ""
+            gap = np.array([self._lost])
+            self._lost = False
+            return [Assembled(np.concatenate(rows)[None, :], np.array([self._end]), None, gap)]
+        self.counts.discarded_pieces += n
+        if self._open and (n or hurt):
             self._lost = self._ever
             self.counts.bad["incomplete"] += self._ever
-            return []
-        self._ever = True
-        gap = np.array([self._lost])
-        self._lost = False
-        return [Assembled(np.concatenate(rows)[None, :], np.array([self._end]), None, gap)]
+            if n != self.n_rows:
+                self._hint = f"frames come with {n} rows, the preset expects {self.n_rows}"
+        return []
 
     def reset(self) -> None:
         """Forget what came before."""
-        self._rows, self._open, self._hurt = [], False, False
+        self.counts.discarded_pieces += self._n
+        self._rows, self._n, self._open, self._hurt = [], 0, False, False
         self._lost = self._ever

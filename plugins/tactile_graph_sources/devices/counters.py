@@ -15,6 +15,8 @@ class LinkCounts:
     doubtful: int = 0
     bad: Counter[str] = field(default_factory=Counter)
     discarded_bytes: int = 0
+    discarded_pieces: int = 0
+    """Rows, chunks or cells that came whole, of frames that did not."""
     resyncs: int = 0
     timeouts: int = 0
     sequence_gaps: int = 0
@@ -29,6 +31,7 @@ class LinkCounts:
             "good frames": self.good,
             "doubtful frames": self.doubtful,
             "discarded bytes": self.discarded_bytes,
+            "discarded pieces": self.discarded_pieces,
             "resyncs": self.resyncs,
             "timeouts": self.timeouts,
             "sequence gaps": self.sequence_gaps,

@@ -87,7 +87,8 @@ class Decoder:
 
     def hint(self) -> str:
         """Return what the bytes themselves say about why no frame is found; may be empty."""
-        return "; ".join(filter(None, (self._out_of_range, self.framer.hint())))
+        counted = self.assembler.hint() if isinstance(self.assembler, BetweenSilences) else ""
+        return "; ".join(filter(None, (self._out_of_range, self.framer.hint(), counted)))
 
     def _frames(self, runs: list[Units]) -> list[Decoded]:
         out: list[Decoded] = []
@@ -178,7 +179,7 @@ def _assembler(
     if preset.assembler == "full":
         return Whole(sequence)
     if isinstance(preset.framer, Text):
-        return BetweenSilences(g.rows, counts)
+        return BetweenSilences(g.rows, preset.transport.silence_s, counts)
     return Pieces(g.n_cells, g.columns if preset.assembler == "rows" else 1, sequence, counts)
 
 

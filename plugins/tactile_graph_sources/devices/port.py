@@ -67,7 +67,7 @@ class Port:
                 self._port.dtr = transport.dtr
             if transport.rts is not None:
                 self._port.rts = transport.rts
-            if "://" not in url:
+            if isinstance(self._port, serial.Serial):  # also by hwgrep://, spy:// and alt://
                 self._port.exclusive = True  # two readers would each get half of the bytes
             self._port.open()
         except PORT_OR_VALUE as error:

@@ -10,6 +10,8 @@ from tactile_graph.errors import did_you_mean, one_of
 BUSY = (errno.EAGAIN, errno.EBUSY)
 FORBIDDEN = (errno.EACCES, errno.EPERM)
 NO_PORT = (errno.EISDIR, errno.ENOTTY)
+TAKEN = "another program has it open"
+NETWORK = ("socket", "rfc2217")
 
 
 def refusal(port: str, error: BaseException, ports: list[str]) -> str:
@@ -30,7 +32,7 @@ def refusal(port: str, error: BaseException, ports: list[str]) -> str:
     if "://" in port:
         return head + _of_url(port, error)
     if number in BUSY:
-        return f"{head}another program has it open"
+        return head + TAKEN
     if number in FORBIDDEN:
         return f"{head}permission denied{_who_may(port)}"
     if number == errno.ENOENT:
@@ -43,9 +45,11 @@ def refusal(port: str, error: BaseException, ports: list[str]) -> str:
 def _of_url(port: str, error: BaseException) -> str:
     scheme, _, place = port.partition("://")
     host, _, number = place.partition(":")
-    if scheme in ("socket", "rfc2217") and not (host and number):
+    if scheme in NETWORK and not (host and number):
         return f"it names no host and port; a URL is like {scheme}://host:port"
-    hint = "" if scheme in ("socket", "rfc2217") else "; a URL is like socket://host:port"
+    if scheme not in NETWORK and getattr(error, "errno", None) in BUSY:
+        return TAKEN
+    hint = "" if scheme in NETWORK else "; a URL is like socket://host:port"
     return f"{_last(error)}{hint}"
 
 

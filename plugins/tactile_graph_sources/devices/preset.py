@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, field_validator, model_validator
 
@@ -381,3 +381,15 @@ def unit_cells(preset: Preset) -> int:
     if isinstance(preset.framer, Packet) and preset.cells.count is not None:
         return preset.cells.count
     return {"full": g.n_cells, "rows": g.columns, "chunks": g.n_cells, "cells": 1}[preset.assembler]
+
+
+def meaning_of(preset: Preset) -> dict[str, Any]:
+    """Return by key what tells what a preset's values mean: its name, its numbers, its geometry.
+
+    What only tells how they come (port, framing, allowed range) is left out.
+    """
+    told = preset.geometry.model_dump(mode="json", exclude={"valid_range"}, exclude_defaults=True)
+    if isinstance(preset.framer, Packet):
+        cells = preset.cells.model_dump(mode="json", exclude_defaults=True)
+        told |= {f"cells.{key}": value for key, value in cells.items() if key != "part"}
+    return {"preset": preset.preset, **told}

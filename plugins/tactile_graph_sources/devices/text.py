@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import deque
+from statistics import median_low
 from typing import Any
 
 import numpy as np
@@ -22,6 +24,8 @@ SHOWN = 20
 
 class TextFramer:
     """Reads lines; a line with the wrong count of numbers is bad, any other line is junk.
+
+    Of rows, an empty line ends a frame, unless as many stand behind most rows.
 
     Lines of digits, which most are, are read at once; others number by number, where the preset
     allows such.
@@ -54,6 +58,11 @@ class TextFramer:
         self._run = (False, False)
         self._no_rows = (np.zeros((0, self.n_numbers), np.int64), np.zeros(0, np.int64))
         self._bad_line = self._junk_line = b""
+        self._by_rows = preset.assembler == "rows"
+        self._usual: deque[int] = deque(maxlen=preset.geometry.rows)
+        """Empty lines behind each of the last rows, as many as a frame has."""
+        self._n_empty = 0
+        self._behind_row = False
 
     def feed(self, data: bytes) -> list[Units]:
         """Take bytes, return the runs of good lines that they complete."""
@@ -65,8 +74,14 @@ class TextFramer:
         for line in lines:
             self._place += len(line) + 1
             if not line:
+                if self._ends_frame():
+                    self._flush(rows, ends, out)
+                    self._claim()
+                    out.append(Units(*self._no_rows, *self._run))
                 continue
+            self._note_empty()
             numbers = self._line(line)
+            self._behind_row = numbers is not None
             if numbers is None:
                 self._flush(rows, ends, out)
                 continue
@@ -79,6 +94,19 @@ class TextFramer:
         self._flush(rows, ends, out)
         self._bound()
         return out
+
+    def _ends_frame(self) -> bool:
+        """Take note of an empty line; return whether it stands where rows usually have none.
+
+        Both bytes of a line end count, so that there may be one or more behind every row.
+        """
+        self._n_empty += 1
+        return bool(self._usual) and self._n_empty == median_low(self._usual) + 1
+
+    def _note_empty(self) -> None:
+        if self._behind_row and self._by_rows:
+            self._usual.append(self._n_empty)
+        self._n_empty = 0
 
     def boundary(self) -> list[Units]:
         """Take note of a silence: what comes next starts afresh."""
@@ -97,6 +125,8 @@ class TextFramer:
         self.counts.discarded_bytes += len(self._buffer)
         self._place += len(self._buffer)
         self._buffer, self._skipping, self._broken = b"", not self.head, True
+        self._usual.clear()
+        self._n_empty, self._behind_row = 0, False
 
     def hint(self) -> str:
         """Return what the bytes themselves say about why no frame is found."""

@@ -81,7 +81,8 @@ class StoreWriter:
     Raises
     ------
     UsageError
-        If the path is there and ``append`` is false, another process writes to it, or Zarr is not
+        If the path is there and ``append`` is false, or it is of another pad or preset by what
+        ``about`` tells of them (``pad``, ``meaning``), another process writes to it, or Zarr is not
         installed.
     """
 
@@ -238,6 +239,7 @@ class StoreWriter:
             raise UsageError(
                 f"{self.path}: {UNSURE}; it is read but not gone on with, choose another name"
             )
+        self._check_about(stored.attributes)
         with said(self.path):
             cut(stored.journal)
             stored = adopt(stored)
@@ -251,6 +253,22 @@ class StoreWriter:
         except Lost as why:
             raise _damaged(self.path, str(why)) from why
         self._marks_gap = self.n_written > 0
+
+    def _check_about(self, kept: Mapping[str, Any]) -> None:
+        """Refuse another pad or preset than the store's, as far as both are told."""
+        pad, own = self.about.get("pad"), kept.get("pad")
+        differ = [f"pad {own!r}, this one is {pad!r}"] if pad and own and pad != own else []
+        meaning, own = self.about.get("meaning"), kept.get("meaning")
+        if meaning and isinstance(own, Mapping):
+            differ += [
+                f"preset with {k}: {own.get(k, 'none')}, this one has {meaning.get(k, 'none')}"
+                for k in sorted({*own, *meaning})
+                if own.get(k) != meaning.get(k)
+            ]
+        if differ:
+            raise UsageError(
+                f"{self.path} is of another {'; another '.join(differ)}; choose another name"
+            )
 
     def flush(self) -> None:
         """Write what is held; the rows count from the moment ``number`` is written.

@@ -26,7 +26,7 @@ from tactile_graph.cli.many.options import Workers
 from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.plot import IN_A_STRIP, Plot, check_plot, plot_of
 from tactile_graph.cli.targets import check_targets
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import is_plain
 from tactile_graph.plugins.registry import installed
 
@@ -398,6 +398,12 @@ class _Run:
             self.error = UsageError(
                 f"--frames {self.span.start}:…: the source gave only {got} frames"
             )
+        elif not got and self._is_endless():  # of others, none may be all there are
+            source = self.pipeline.source
+            name = source.name if source is not None else "frames"
+            counts = ", ".join(f"{n} {k}" for k, n in sorted(self.report.counts.items()) if n)
+            told = "no frame came, and nothing was written" + (f" ({counts})" if counts else "")
+            self.error = DataError(f"source {name!r}", told)
 
     def _keeps(self) -> bool:
         """Return whether what is written stays if the run ends here.

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.engine.outcomes.outcome import raised_at
-from tactile_graph.errors import DataError, Degenerate, Skip, TactileGraphError, text_of
+from tactile_graph.errors import DataError, Degenerate, Skip, TactileGraphError, UsageError, text_of
+from tactile_graph.files import lies_beside
 from tactile_graph.pipeline.graph import Source
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
@@ -41,6 +42,13 @@ def open_source(
         yield from _frames(source, seed, report, in_stacks)
     except (Degenerate, Skip) as error:  # words of steps, which go on with the next frame
         raise DataError(f"source {source.name!r}", f"{error} ({raised_at(error)})") from error
+    except (UsageError, DataError) as error:
+        hint = lies_beside(source.mark.file, source.settings, str(error))
+        if not hint:
+            raise
+        if isinstance(error, DataError):
+            raise DataError(error.where, error.what + hint) from error
+        raise UsageError(f"{error}{hint}") from error
     except TactileGraphError:
         raise
     except (Exception, SystemExit) as error:  # a source may raise anything

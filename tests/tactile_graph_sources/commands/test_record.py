@@ -244,6 +244,35 @@ def test_frames_of_another_pad_are_not_appended(tmp_path: Path, pad: FakePad, se
     assert told in result.output
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("text", "pad_name", "told"),
+    [
+        (PRINTED, "", ""),
+        (PRINTED.replace("115200", "9600"), "bench", ""),
+        (PRINTED, "other", "is of another pad 'bench', this one is 'other'; choose another name"),
+        (
+            PRINTED.replace("gram", "gram, flip: rows"),
+            "",
+            "is of another preset with flip: none, this one has rows; choose another name",
+        ),
+        (PRINTED.replace("preset: p", "preset: re"), "", "with preset: printed, this one has re"),
+    ],
+)
+def test_a_preset_or_pad_that_means_something_else_is_not_appended(
+    tmp_path: Path, pad: FakePad, sends, text: str, pad_name: str, told: str
+) -> None:
+    preset, target = tmp_path / "printed.yaml", tmp_path / "a.zarr"
+    words = ["--port", pad.link, "--preset", preset, "--give-up", 20, "--frames", 1]
+    for now, name in ((PRINTED, "bench"), (text, pad_name)):
+        preset.write_text(now)
+        sends(b"0\n1,2,3,4,5,6\n1,2,3,4,5,6\n")
+        result = recorded(target, *words, "--pad", name, "--append")
+    assert result.exit_code == (2 if told else 0), result.output
+    assert told in result.output
+    assert len(list(read_store(target))) == (1 if told else 2)
+
+
 def test_frames_of_any_source_are_recorded_with_their_truth(tmp_path: Path) -> None:
     args = ["record", str(tmp_path / "a.zarr"), "--source", "simulate", "--with", "scene=discs"]
     result = CliRunner().invoke(cli, [*args, "--frames", "3"])

@@ -430,8 +430,53 @@ def test_rows_without_a_number_need_just_enough_between_two_pauses() -> None:
     for n in (15, 17):
         assert decoder.feed(b"".join((lines * 2)[:n])) + decoder.boundary() == []
     assert decoder.counts.bad["incomplete"] == 2
+    assert decoder.hint() == "frames come with 17 rows, the preset expects 16"
     (after,) = decoder.feed(b"Full matrix:\r\n" + frame) + decoder.boundary()
     assert after.gap
+
+
+def lines_of_rows(end: bytes, between: bytes, n_frames: int = 6) -> bytes:
+    rows = [b"".join(b"%d," % v for v in row) for row in np.arange(256).reshape(16, 16)]
+    return (b"".join(row + end for row in rows) + between) * n_frames
+
+
+@pytest.mark.parametrize("size", [1, 7, 100_000])
+@pytest.mark.parametrize("end", [b"\n", b"\r\n", b"\r", b"\n\n", b"\r\n\r\n"])
+def test_an_empty_line_ends_a_frame_of_rows(end: bytes, size: int) -> None:
+    """Rows without a pause between frames, as at 50 Hz and more."""
+    decoder = Decoder(load_preset("bnl-16x16"))
+    sent = lines_of_rows(end, b"\r\n")
+    got = [d for c in chunks(b"1\n" + sent, size) for d in decoder.feed(c)]
+    assert len(got) == 5  # nobody knows whether the first row of the first was the first
+    assert not any(d.gap for d in got)
+    np.testing.assert_array_equal(got[0].values.reshape(-1), np.arange(256))
+    assert decoder.counts.discarded_pieces == 16
+    first, _ = sent.split(end, 1)
+    assert len(decoder.feed(sent.replace(first + end, b"", 1))) == 5
+    assert dict(decoder.counts.bad) == {"incomplete": 1}
+
+
+@pytest.mark.parametrize("end", [b"\n", b"\r\n", b"\n\n", b"\r\n\r\n"])
+def test_rows_that_nothing_parts_are_no_frames(end: bytes) -> None:
+    """An empty line behind every row ends no frame."""
+    decoder = Decoder(load_preset("bnl-16x16"))
+    assert decoder.feed(b"1\n" + lines_of_rows(end, b"")) == []
+    assert decoder.hint().startswith("96 rows came without a pause of ")
+    decoder.boundary()
+    decoder.feed(lines_of_rows(end, b"", 1))
+    assert len(decoder.boundary()) == 1
+    assert decoder.counts.discarded_pieces == 96
+
+
+def test_pieces_before_the_first_whole_frame_are_counted() -> None:
+    kit = BY_NAME["wiresens-16x16"]
+    frame = kit.encode(pads_of(kit, 1)[0], 0)
+    size = len(frame) // 4
+    decoder = decoder_of(kit)
+    assert (
+        len(send(decoder, kit, [frame[size:], frame, frame[:size], frame[2 * size :], frame])) == 2
+    )
+    assert decoder.counts.discarded_pieces == 3 + 3
 
 
 @pytest.mark.parametrize(

@@ -41,11 +41,12 @@ def test_what_is_no_port_is_told(tmp_path: Path) -> None:
         assert f"port '{name}' cannot be opened: it is no serial port; ports" in opening(str(name))
 
 
-def test_a_port_that_another_program_has_open_is_told(tmp_path: Path) -> None:
+@pytest.mark.parametrize("scheme", ["", "spy://", "alt://"])
+def test_a_port_that_another_program_has_open_is_told(scheme: str) -> None:
     master, slave = os.openpty()
-    name = os.ttyname(slave)
+    name = scheme + os.ttyname(slave)
     try:
-        with serial.Serial(name, exclusive=True):
+        with serial.Serial(os.ttyname(slave), exclusive=True):
             assert opening(name) == f"port {name!r} cannot be opened: another program has it open"
     finally:
         os.close(master)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import jsonschema
@@ -194,3 +195,29 @@ def test_the_files_that_a_source_names_are_opened_and_all_that_is_wrong_told(
         "pipeline: p\nabout: x\nsource: {step: recording, with: {path: flat.npz}}\n" + rest
     )
     assert call("check", "p.yaml").exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("source", "node"),
+    [
+        ("recording, with: {path: a.csv}", "threshold, in: frame, with: {level: 1}"),
+        ("serial, with: {port: x, preset: a.yaml}", "threshold, in: frame, with: {level: 1}"),
+        ("simulate, with: {scene: discs}", "correct_readings, in: frame, with: {pad: a.yaml}"),
+    ],
+)
+def test_a_file_that_lies_beside_the_pipeline_is_missed_with_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, source: str, node: str
+) -> None:
+    """What settings name is looked for from the current folder."""
+    monkeypatch.chdir(tmp_path)
+    Path("sub").mkdir()
+    Path("sub/a.csv").touch()
+    Path("sub/a.yaml").touch()
+    text = f"pipeline: p\nsource: {{step: {source}}}\nnodes: {{n: {{step: {node}}}}}\n"
+    Path("sub/p.yaml").write_text(text + "outputs: [n]\n")
+    for command in ("check", "run"):
+        result = call(command, "sub/p.yaml")
+        assert result.exit_code == 2
+        told = " ".join(result.output.split())
+        assert re.search(r"from the current folder: did you mean 'sub/a\.(csv|yaml)'\?", told)
+        assert "Errno" not in told
