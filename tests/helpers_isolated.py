@@ -10,6 +10,7 @@ import time
 import numpy as np
 
 from tactile_graph import Degenerate, Image, Skip
+from tactile_graph.steps import TimeGap
 
 HANGS, CRASHES, FAILS, PRINTS = 1, 2, 3, 4
 
@@ -73,6 +74,22 @@ class Counting:
         """Return how many calls there were, and what was drawn once."""
         self.n += 1
         return self.n, self.drawn
+
+
+class Timed:
+    """Counts its calls and is told of time; crashes where the image says so."""
+
+    def __init__(self) -> None:
+        self.n = 0
+
+    def __call__(
+        self, image: Image, *, gap_s: TimeGap = None, rng: np.random.Generator
+    ) -> tuple[int, float | None]:
+        """Return how many calls there were, and the time since the last."""
+        if image.values[0, 0] == CRASHES:
+            os.kill(os.getpid(), signal.SIGKILL)
+        self.n += 1
+        return self.n, gap_s
 
 
 def elsewhere(image: Image) -> int:

@@ -32,6 +32,10 @@ class Geometry:
     columns: Annotated[int, Ge(1)] = 16
     element_cm: Annotated[float, Gt(0)] = 1.0
     gap_cm: Annotated[float, Ge(0)] = 0.3
+    key_hints: ClassVar[dict[str, str]] = dict.fromkeys(
+        ("element_cm", "gap_cm"),
+        "it is one number for both ways, as elements of a pad file are square",
+    )
     __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
 
     @property

@@ -32,7 +32,8 @@ def read_record(document: Document, kind: type[T], what: str) -> T:
     document : Document
         As read; its own problems are reported too.
     kind : type
-        A frozen dataclass that forbids unknown keys.
+        A frozen dataclass that forbids unknown keys. Its ``key_hints`` tell what is meant where a
+        key, known or not, is wrong.
     what : str
         What the file should be, for its errors: ``"a pad"``.
 
@@ -125,7 +126,8 @@ def _note(document: Document, e: Any, kind: Any) -> None:
         document.problem(str(context.get("error", e["msg"])), *path)
     else:
         text = str(e["msg"]).removeprefix("Input ")
-        document.problem(f"{name} {text[0].lower()}{text[1:]}, got {shown(got)}", *path)
+        hint = _key_hint(name, _records(kind, path[:-1]))
+        document.problem(f"{name} {text[0].lower()}{text[1:]}, got {shown(got)}{hint}", *path)
 
 
 def _walk(data: Any, loc: Path) -> tuple[Path, Path]:
@@ -151,14 +153,23 @@ def _holds(data: Any, part: str | int) -> bool:
 
 
 def _unknown_key(name: str, parents: Path, kind: Any) -> str:
-    known = _fields(kind, parents)
-    hint = did_you_mean(name, known) or f"; allowed are: {one_of(known)}"
+    from dataclasses import fields
+
+    within = _records(kind, parents)
+    known = sorted({f.name for k in within for f in fields(k)})
+    hint = _key_hint(name, within) or did_you_mean(name, known) or f"; allowed are: {one_of(known)}"
     return f"unknown key {shown(name)}{hint}"
 
 
-def _fields(kind: Any, parents: Path) -> list[str]:
-    """Return the keys allowed below ``parents``, read off the annotations."""
-    from dataclasses import fields, is_dataclass
+def _key_hint(name: str, within: Sequence[Any]) -> str:
+    """Return what one of the records that a key may stand in says of it."""
+    hints = [k.key_hints[name] for k in within if name in getattr(k, "key_hints", {})]
+    return f"; {hints[0]}" if hints else ""
+
+
+def _records(kind: Any, parents: Path) -> list[Any]:
+    """Return the records that may stand below ``parents``, read off the annotations."""
+    from dataclasses import is_dataclass
     from typing import get_args, get_type_hints
 
     def records(annotation: Any) -> list[Any]:
@@ -174,4 +185,4 @@ def _fields(kind: Any, parents: Path) -> list[str]:
         deeper = [r for annotation in inner for r in records(annotation)]
         tagged = [k for k in found if part == getattr(k, "kind", getattr(k, "shape", None))]
         found = deeper or tagged or found
-    return sorted({f.name for k in found for f in fields(k)})
+    return found

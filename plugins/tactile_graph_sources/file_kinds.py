@@ -20,7 +20,16 @@ def tell_preset(preset: Preset) -> str:
 
 
 def tell_scene(scene: Scene) -> str:
-    """Return what lies in a scene, in a line."""
+    """Return what lies in a scene, in a line, and the furthest place; no pad is known here."""
+    places = [t.place for group in scene.in_turn or (scene.objects,) for t in group]
+    given = [place for place in places if not isinstance(place, str)]
+    if not given:
+        return _told_objects(scene)
+    x, y = (max(along) for along in zip(*given, strict=True))
+    return f"{_told_objects(scene)}; places up to x {x:g} cm, y {y:g} cm"
+
+
+def _told_objects(scene: Scene) -> str:
     if scene.in_turn:
         sizes = sorted({len(group) for group in scene.in_turn})
         n = str(sizes[0]) if len(sizes) == 1 else f"{sizes[0]} to {sizes[-1]}"

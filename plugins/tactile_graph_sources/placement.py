@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import UsageError
-from tactile_graph.wires import Shape
+from tactile_graph.wires import Circle, Rectangle, Shape
 from tactile_graph_pads.geometry import Geometry
-from tactile_graph_sources.scene import Thing
+from tactile_graph_sources.scene import Scene, Thing
 
 MOST_TRIES = 2000
 """For one object, before all are taken off the pad again."""
@@ -82,7 +82,7 @@ def _place_one(
         shape = thing.footprint(float(x_cm), float(y_cm), angle_rad)
         if all(are_apart(shape, other, apart_cm) for other in others):
             return shape
-    label = f"object {number + 1}" + (f" ({thing.name})" if thing.name else "")
+    label = _label(number, thing)
     if low is None or high is None or (low > high).any():
         width, height = geometry.size_cm
         raise UsageError(f"{label} does not fit on the pad of {width:g} by {height:g} cm")
@@ -90,6 +90,67 @@ def _place_one(
         f"{label} found no place {apart_cm:g} cm apart from the {len(others)} before it "
         f"in {MOST_TRIES} tries, nor after starting anew {MOST_STARTS - 1} times"
     )
+
+
+def check_places(scene: Scene, geometry: Geometry) -> None:
+    """Refuse places at which an object lies wholly off the pad.
+
+    Parameters
+    ----------
+    scene : Scene
+        All its placements are looked at; angles that are left to chance may be any.
+    geometry : Geometry
+        Gives the size of the pad.
+
+    Raises
+    ------
+    UsageError
+        With the first such object.
+    """
+    width, height = geometry.size_cm
+    for placement, things in enumerate(scene.in_turn or (scene.objects,)):
+        of_it = f" of placement {placement + 1}" if scene.in_turn else ""
+        for number, thing in enumerate(things):
+            if isinstance(thing.place, str) or not is_off(
+                _within(thing), (0.0, width, height, 0.0)
+            ):
+                continue
+            x, y = thing.place
+            raise UsageError(
+                f"{_label(number, thing)}{of_it}: at place [{x:g}, {y:g}] it lies wholly off the "
+                f"pad of {width:g} by {height:g} cm; places are in cm from the pad's top left "
+                "corner, x to the right, y down"
+            )
+
+
+def is_off(shape: Shape, extent_cm: tuple[float, float, float, float]) -> bool:
+    """Return whether an outline lies wholly off a pad.
+
+    Parameters
+    ----------
+    shape : Circle, Ellipse, Rectangle or Polygon
+        A polygon that is not convex counts as its hull.
+    extent_cm : (float, float, float, float)
+        The pad's left, right, bottom and top edge.
+    """
+    left, right, bottom, top = extent_cm
+    x_cm, y_cm = 0.5 * (left + right), 0.5 * (top + bottom)
+    return are_apart(shape, Rectangle(x_cm, y_cm, right - left, bottom - top, 0.0))
+
+
+def _within(thing: Thing) -> Shape:
+    """Return what an object that has a place lies within at any angle that it may have."""
+    assert not isinstance(thing.place, str)
+    x_cm, y_cm = thing.place
+    angle_deg = getattr(thing, "angle_deg", 0.0)
+    if angle_deg == "random":
+        corners = thing.footprint(0.0, 0.0, 0.0).outline_cm()
+        return Circle(x_cm, y_cm, float(np.hypot(*corners.T).max()))
+    return thing.footprint(x_cm, y_cm, math.radians(angle_deg))
+
+
+def _label(number: int, thing: Thing) -> str:
+    return f"object {number + 1}" + (f" ({thing.name})" if thing.name else "")
 
 
 def _angle_rad(thing: Thing, rng: np.random.Generator) -> float:
@@ -105,7 +166,7 @@ def _room(shape: Shape, geometry: Geometry) -> tuple[NDArray[np.float64], NDArra
 
 def _reach(shape: Shape, directions: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return how far the outline reaches along each direction (columns), from the origin."""
-    from tactile_graph.wires import Circle, Ellipse
+    from tactile_graph.wires import Ellipse
 
     if isinstance(shape, Circle):
         centre = np.array([shape.x_cm, shape.y_cm]) @ directions

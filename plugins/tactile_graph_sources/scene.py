@@ -52,6 +52,9 @@ class Thing:
     stacked_g: tuple[Grams, ...] = ()
     stack_offset_cm: Annotated[float, Ge(0)] = 0.0
     touches: Annotated[float, Gt(0), Le(1)] = 1.0
+    key_hints: ClassVar[dict[str, str]] = dict.fromkeys(
+        ("x_cm", "y_cm", "x", "y", "centre_cm", "position"), "its centre is place: [x, y], in cm"
+    )
     __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
 
     @property

@@ -15,7 +15,7 @@ from tactile_graph.wires import Frame, Shape, TrueObject
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.pad import Pad, load_pad
 from tactile_graph_pads.unevenness import Fields
-from tactile_graph_sources.placement import place
+from tactile_graph_sources.placement import check_places, place
 from tactile_graph_sources.scene import Scene, Thing, load_scene
 
 Array = NDArray[np.float64]
@@ -57,8 +57,9 @@ def simulate(
     report : Report
         Told how many frames to expect.
     """
-    laid = load_scene(scene)
-    bench = _Bench(_overridden(load_pad(pad), laid, sigma, voids), laid, rng)
+    laid, under = load_scene(scene), load_pad(pad)
+    check_places(laid, under.geometry)
+    bench = _Bench(_overridden(under, laid, sigma, voids), laid, rng)
     report.expect(frames)
     seconds = bench.pad.scan.frame_s(bench.pad.geometry.rows * bench.pad.geometry.columns)
     for index in range(frames):
@@ -68,6 +69,14 @@ def simulate(
         values = counts if output == "counts" else bench.pad.converter.volts(counts)
         image = bench.pad.image(values, output)
         yield Frame(image, index, index * seconds, bench.truth)
+
+
+def check_simulate(*, scene: str | dict[str, Any], pad: str | dict[str, Any], **_: Any) -> None:
+    """Refuse a scene that cannot lie on the pad, as the source itself does."""
+    check_places(load_scene(scene), load_pad(pad).geometry)
+
+
+simulate.check = check_simulate  # type: ignore[attr-defined]
 
 
 def _overridden(pad: Pad, scene: Scene, sigma: float | None, voids: float | None) -> Pad:

@@ -19,9 +19,9 @@ def problems_of_source(found: Registry, source: Source) -> list[Problem]:
 
     A setting that is called as a kind of file is (``pad``, ``scene``, ``preset``) names one; of
     steps that read recordings the one that takes the path does. Of a recording the first frame is
-    read.
+    read. Where each of them is right, the source's own ``check`` tells whether they go together.
     """
-    problems = problems_of_records(found, source)
+    problems = problems_of_records(found, source) or problems_together(source)
     if found.has("readers", source.name):
         setting = str(found.offer("readers", source.name).target)
         for path in _listed(source.settings.get(setting)):
@@ -37,6 +37,21 @@ def problems_of_records(found: Registry, source: Source) -> list[Problem]:
         if isinstance(value, str) and found.has("file_kinds", name):
             problems += _of_record(found, source, name, value)
     return problems
+
+
+def problems_together(source: Source) -> list[Problem]:
+    """Return what is wrong with a source's settings together, as its attribute ``check`` tells.
+
+    That is a function which takes the settings as the source does, and raises what is wrong.
+    """
+    check = getattr(source.signature.target, "check", None)
+    if check is None:
+        return []
+    try:
+        check(**source.signature.arguments(source.settings))
+    except TactileGraphError as error:
+        return [Problem(source.mark, f"source: {error}")]
+    return []
 
 
 def _of_record(found: Registry, source: Source, name: str, value: str) -> Iterator[Problem]:

@@ -26,9 +26,10 @@ from tactile_graph.engine.operations.step_operation import (
     frozen,
     step_operation,
 )
-from tactile_graph.engine.outcomes.outcome import NO_VALUE, Skipped, failure
+from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed, Skipped, failure
 from tactile_graph.engine.plan import Item, Plan
 from tactile_graph.engine.written import AFTER_FRAMES, CHAINS_AFTER_FRAMES, Written
+from tactile_graph.errors import Degenerate, RuleError
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref
@@ -242,12 +243,18 @@ def _once(slot: int, time: int, body: Operation, blank: State) -> Operation:
     def operation(state: State) -> None:
         if state[slot] is None and blank[slot] is None:
             body(state)
-            if state[slot].__class__ not in NO_VALUE:  # another call may have what this one lacks
-                blank[slot] = state[slot]
+            value = state[slot]
+            if value.__class__ not in NO_VALUE or _is_of_data(value):
+                blank[slot] = value  # else another call may have what this one lacks
         elif state[slot] is None:  # frames of one block set out with the same blank
             state[slot] = blank[slot]
 
     return operation
+
+
+def _is_of_data(value: Any) -> bool:
+    """Return whether it failed for its data, as it would again."""
+    return isinstance(value, Failed) and isinstance(value.error, Degenerate | RuleError)
 
 
 def _unless_settled(slot: int, body: Operation) -> Operation:

@@ -83,6 +83,7 @@ class _Stack(NamedTuple):
 
 _REST = (
     "index", "time_s", "truth", "device_time_s", "gap", "label", "doubtful", "place", "own_number",
+    "state_of",
 )  # fmt: skip
 
 

@@ -65,6 +65,8 @@ class _Diverted:
         self.lock = threading.Lock()
         self.n = 0
         self.back = ExitStack()
+        self.kept: int | None = None
+        """The descriptor that is stdout's meanwhile."""
 
 
 _DIVERTED = _Diverted()
@@ -87,6 +89,22 @@ def stdout_to_stderr() -> Iterator[None]:
                 _DIVERTED.back.close()
 
 
+@contextmanager
+def stdout_again() -> Iterator[None]:
+    """Have stdout's descriptor be its own meanwhile, for what writes there on purpose."""
+    if (kept := _DIVERTED.kept) is None:
+        yield
+        return
+    _flush_c()
+    os.dup2(kept, STDOUT)
+    try:
+        yield
+    finally:
+        _flush_c()
+        with suppress(OSError):  # there may be no stderr
+            os.dup2(STDERR, STDOUT)
+
+
 def _divert(back: ExitStack) -> None:
     with suppress(OSError, ValueError, AttributeError):  # there may be no stdout, or a closed one
         sys.__stdout__.flush()  # type: ignore[union-attr]
@@ -97,6 +115,8 @@ def _divert(back: ExitStack) -> None:
     back.callback(os.close, kept)
     back.callback(os.dup2, kept, STDOUT)
     back.callback(_flush_c)
+    back.callback(setattr, _DIVERTED, "kept", None)
+    _DIVERTED.kept = kept
     with suppress(OSError):  # there may be no stderr
         os.dup2(STDERR, STDOUT)
 

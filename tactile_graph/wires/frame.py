@@ -69,6 +69,9 @@ class Frame:
         None where the source leaves none out, and ``index`` says it.
     own_number : int, optional
         The number that the recording itself gives it.
+    state_of : str, optional
+        The sensor or file whose state steps go on with, where the label is what somebody said of
+        that moment; None where the label is that sensor or file.
     """
 
     image: Image
@@ -82,6 +85,7 @@ class Frame:
     mask: Mask | None = None
     place: int | None = None
     own_number: int | None = None
+    state_of: str | None = None
     provides: ClassVar[Mapping[type, str]] = {Image: "image"}
     columns_shown: ClassVar[tuple[str, ...]] = ()  # every table has what tells frames apart
 

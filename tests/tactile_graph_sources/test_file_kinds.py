@@ -69,6 +69,7 @@ def test_every_shipped_file_has_its_line_in_the_list(offers: str) -> None:
 
 WRONG = [
     ("pad", "geometry: {rows: 0}", "rows must be >= 1, got 0"),
+    ("pad", "geometry: {element_cm: [0.5, 1.5]}", "it is one number for both ways, as elements"),
     ("pad", "circuit: {bias_ohm: 3}", "'kind' is missing"),
     ("pad", "circuit: {kind: feedback, mux_ohm: 3}", "unknown key 'mux_ohm'"),
     ("scene", "objects: [{shape: disc, weight_g: 3}]", "'radius_cm' is missing"),
@@ -88,6 +89,15 @@ def test_a_wrong_file_is_refused_by_check_and_by_its_schema(
     assert got.exit_code == 2
     assert message in got.stdout
     assert not allowed(kind, text)
+
+
+def test_a_scene_tells_its_furthest_place(tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    disc = "shape: disc, weight_g: 3, radius_cm: 1"
+    path.write_text(
+        f"objects: [{{{disc}}}, {{{disc}, place: [4, 9.5]}}, {{{disc}, place: [6, 2]}}]"
+    )
+    assert "scene: 3 objects; places up to x 6 cm, y 9.5 cm" in call("check", path).stdout
 
 
 def test_a_pad_whose_table_of_elements_is_gone_is_wrong(tmp_path: Path) -> None:

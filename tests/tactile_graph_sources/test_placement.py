@@ -1,6 +1,7 @@
 """Objects are put down on the pad, and apart."""
 
 import math
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
@@ -9,8 +10,8 @@ from tactile_graph.errors import UsageError
 from tactile_graph.wires import Circle, Ellipse, Rectangle
 from tactile_graph_pads.geometry import Geometry
 from tactile_graph_sources import placement
-from tactile_graph_sources.placement import are_apart, place
-from tactile_graph_sources.scene import Disc, Oval, Plate, Slab
+from tactile_graph_sources.placement import are_apart, check_places, place
+from tactile_graph_sources.scene import Disc, Oval, Plate, Scene, Slab
 
 PAD = Geometry()
 ONE = placement._place_one
@@ -63,6 +64,28 @@ def test_an_object_too_large_for_the_pad_is_named():
     big = Disc(weight_g=1.0, radius_cm=11.0, name="plate")
     with pytest.raises(UsageError, match=r"object 1 \(plate\) does not fit on the pad of 20.5 by"):
         place([big], PAD, 0.0, np.random.default_rng(0))
+
+
+@pytest.mark.parametrize(
+    ("thing", "off"),
+    [
+        (Disc(weight_g=1.0, radius_cm=2.0, place=(200.0, 3.0)), True),
+        (Disc(weight_g=1.0, radius_cm=2.0, place=(22.4, 3.0)), False),
+        (Disc(weight_g=1.0, radius_cm=2.0, place=(-1.5, -1.5)), True),  # beside the corner
+        (Slab(weight_g=1.0, length_cm=8.0, breadth_cm=2.0, place=(9.0, -3.0), angle_deg=0.0), True),
+        (Slab(weight_g=1.0, length_cm=8.0, breadth_cm=2.0, place=(9.0, -3.0)), False),
+        (Plate(weight_g=1.0, sides=5, radius_cm=5.0, place=(9.0, 26.0)), True),
+        (Disc(weight_g=1.0, radius_cm=2.0), False),
+    ],
+)
+def test_a_place_wholly_off_the_pad_is_refused(thing, off):
+    for scene, at in (
+        (Scene(objects=(THINGS[0], thing)), "object 2: at place"),
+        (Scene(in_turn=((THINGS[0],), (thing,))), "object 1 of placement 2: at place"),
+    ):
+        told = pytest.raises(UsageError, match=at + r" .* wholly off the pad of 20.5 by 20.5 cm")
+        with told if off else nullcontext():
+            check_places(scene, PAD)
 
 
 def test_objects_that_find_no_room_are_named(monkeypatch):

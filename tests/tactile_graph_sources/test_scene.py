@@ -63,6 +63,10 @@ def test_a_scene_file_of_ones_own_is_read(tmp_path):
             r"scene\.objects\[0\]\.radius: unknown key 'radius'",
         ),
         (
+            {"objects": [{**DISC, "x_cm": 3}]},
+            r"\.x_cm: unknown key 'x_cm'; its centre is place: \[x, y\], in cm",
+        ),
+        (
             {"objects": [{**DISC, "shape": "disk"}]},
             "shape must be one of disc, ellipse, polygon, r",
         ),

@@ -43,6 +43,12 @@ def test_asking_for_more_frames_does_not_change_the_first():
     assert few[1].image.values.tobytes() == many[1].image.values.tobytes()
 
 
+def test_a_place_wholly_off_the_pad_is_refused_before_the_first_frame():
+    scene = {"in_turn": [[DISC], [{**DISC, "place": [200, 3]}]]}
+    with pytest.raises(UsageError, match=r"object 1 of placement 2: at place \[200, 3\]"):
+        frames(1, scene=scene)
+
+
 def test_every_frame_carries_its_truth_number_and_time():
     taken = frames(4, scene="discs")
     assert [f.index for f in taken] == [0, 1, 2, 3]

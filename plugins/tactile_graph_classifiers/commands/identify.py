@@ -66,7 +66,7 @@ def identify(
     known = ObjectDatabase(database, timeout_s).known()  # what is wrong with it comes first
     node = _identifying(load(pipeline), only)
     # With the source and not after it: what the sample knows may be in another unit than both.
-    settings = (*settings, f"{node}.database={json.dumps(str(database))}")
+    settings = (*settings, f"{node}.database={json.dumps(str(database), ensure_ascii=False)}")
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
     report = Report()
     runner = opened.runner([node], seed)

@@ -23,6 +23,11 @@ class Instrument(NamedTuple):
     pitch_x_cm: float
     pitch_y_cm: float
 
+    @classmethod
+    def of(cls, rows: int, columns: int, pitch_x_cm: float, pitch_y_cm: float) -> Instrument:
+        """Return one of plain numbers, as a database holds and seals them; of whatever numbers."""
+        return cls(int(rows), int(columns), float(pitch_x_cm), float(pitch_y_cm))
+
     def __str__(self) -> str:
         """Grid and pitch, for people."""
         return (

@@ -298,5 +298,6 @@ def settle(connection: sqlite3.Connection, setting: Setting, choice: Choice | No
     )
     if setting.instrument is not None:
         connection.execute(INSTRUMENT)
-        row = (*setting.instrument, seal(setting.instrument))
+        instrument = Instrument.of(*setting.instrument)
+        row = (*instrument, seal(instrument))
         connection.execute("INSERT OR REPLACE INTO instrument VALUES (1, ?, ?, ?, ?, ?)", row)

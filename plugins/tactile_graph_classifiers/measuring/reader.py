@@ -126,7 +126,7 @@ class Reader:
 
 def instrument_of(frame: Frame) -> Instrument:
     """Return what a frame was recorded with."""
-    return Instrument(*frame.image.shape, *frame.image.pitch_cm)
+    return Instrument.of(*frame.image.shape, *frame.image.pitch_cm)
 
 
 def is_by_law(frame: Frame, quantity: str) -> bool:

@@ -17,10 +17,12 @@ from tactile_graph_filters.morphology.elements import parse_element
 from tactile_graph_filters.morphology.erosion import make_plan, sweep
 from tactile_graph_filters.nan import finite, refuse_nan
 
-NOISES = 10.0
+NOISES = 25.0
 """From so many standard deviations of the empty pad's noise on a cell is touched."""
 STEPS = 2.0
 """And no lower than from so many of the least steps that readings of the empty pad differ by."""
+OF_ONE_FRAME = 25.0
+"""From which reading on a cell is touched where a single frame, which shows no noise, was taken."""
 TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -39,8 +41,9 @@ class Tare:
     touched : float, optional
         From which reading above the baseline on, in the image's unit, a cell is touched. The
         baseline of touched cells and of their eight neighbours is frozen, so that a resting
-        object is not eaten by it. If not given, ten standard deviations of the noise in those
-        first frames, and no less than two steps of readings that are whole numbers of a step.
+        object is not eaten by it. If not given, 25 standard deviations of the noise in those
+        first frames, and no less than two steps of readings that are whole numbers of a step;
+        25 where ``n_frames`` is 1, which shows no noise.
     frame_s : float
         What a frame lasts where the source keeps no time.
     clip : bool
@@ -140,6 +143,8 @@ def _touched(frames: NDArray[Any]) -> float:
     frames : ndarray, shape (n_frames, n_cells)
         The empty pad's readings, in any unit; NaN where there is none, in no cell everywhere.
     """
+    if len(frames) == 1:
+        return OF_ONE_FRAME
     with np.errstate(over="ignore"):  # of cells that change: many pads read 0 below some load
         noise = np.nanstd(frames, axis=0)[np.nanmin(frames, axis=0) < np.nanmax(frames, axis=0)]
         steps = np.diff(np.unique(frames[~np.isnan(frames)]))

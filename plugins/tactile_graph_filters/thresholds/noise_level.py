@@ -30,6 +30,10 @@ FEW_CELLS = (1.0, 28.0, 10.1, 3.44, 1.97, 2.95, 1.99, 1.53, 1.26, 1.08, 1.32, 1.
 52 cells. An empty pad with normal noise is then reached no oftener than one of 8 x 8 (in one of 820
 frames; in one of 100 with 5 to 8 cells, where the two lowest alone tell), by 2 million simulated
 frames each."""
+FEWEST_AT_REST, BEYOND = 4, 7.0
+"""What stands apart from so many readings or more by so many times their range is no noise, however
+close the lowest of them lie: normal noise of up to 52 cells looks so in less than one of 1000
+frames."""
 LEAST_SHARE = 0.03
 """And no lower than at this share of the peak, for frames without any noise below."""
 
@@ -48,9 +52,9 @@ def noise_level(image: Image) -> float:
     float
         The lower quartile, plus ten standard deviations of the noise, as the distance of the
         5 % quantile from the quartile tells it (where both are cut off: `clipped_noise`), or 3 %
-        of the peak's height if that is more. Of 52 cells or fewer it is raised by `FEW_CELLS`; of
-        4 or fewer no noise is known. Above every reading where all are equal; infinite where no
-        cell is valid.
+        of the peak's height if that is more. Of 52 cells or fewer it is raised by `FEW_CELLS`, but
+        not above readings that plainly stand apart (`BEYOND`); of 4 or fewer no noise is known.
+        Above every reading where all are equal; infinite where no cell is valid.
 
     Notes
     -----
@@ -60,10 +64,22 @@ def noise_level(image: Image) -> float:
     found = _lower(image)
     if found is None:
         return math.inf
-    low, base, peak, n = found
-    few = (n - 1) // 4
-    factor = FEW_CELLS[few] if 0 <= few < len(FEW_CELLS) else 1.0
-    return level_above(factor * (base - low), base, peak)
+    low, base, peak, seen = found
+    level = level_above(base - low, base, peak)
+    few = (seen.size - 1) // 4
+    if not 0 <= few < len(FEW_CELLS):
+        return level
+    raised = level_above(FEW_CELLS[few] * (base - low), base, peak)
+    return max(level, min(raised, _level_below_apart(seen)))
+
+
+def _level_below_apart(seen: Values) -> float:
+    """Return the level above the first of few readings that others plainly stand apart from."""
+    ordered = np.sort(seen)
+    rest = ordered[max(FEWEST_AT_REST - 1, int(MIDDLE * (seen.size - 1))) : -1]
+    levels = rest + BEYOND * (rest - ordered[0])
+    apart = (levels > rest) & (ordered[seen.size - rest.size :] > levels)
+    return float(levels[apart].min(initial=math.inf))
 
 
 def lower_readings(image: Image) -> tuple[float, float, float] | None:
@@ -76,8 +92,8 @@ def lower_readings(image: Image) -> tuple[float, float, float] | None:
     return None if found is None else found[:3]
 
 
-def _lower(image: Image) -> tuple[float, float, float, int] | None:
-    """Return the lower readings, and of how many cells; 0 where the first is no cell's reading."""
+def _lower(image: Image) -> tuple[float, float, float, Values] | None:
+    """Return the lower readings, and of which ones; none where the first is no cell's reading."""
     rows, columns = dead_lines(image)
     values, usable = image.values, image.valid
     if rows.any() or columns.any():
@@ -95,8 +111,8 @@ def _lower(image: Image) -> tuple[float, float, float, int] | None:
     lowest, base, peak = (float(parted[k]) for k in (low, middle, seen.size - 1))
     if lowest == base < peak:
         lowest -= LOW_TO_MIDDLE_SD * _noise_above(image.values, usable, seen, base)
-        return lowest, base, peak, 0
-    return lowest, base, peak, seen.size
+        return lowest, base, peak, seen[:0]
+    return lowest, base, peak, seen
 
 
 def _noise_above(

@@ -80,7 +80,7 @@ class Recorder:
             frames = [replace(frames[0], gap=True), *frames[1:]]
             self._after_loss = False
         label = self.label
-        self._queue.put([replace(f, label=label) for f in frames] if label else frames)
+        self._queue.put([_remarked(f, label) for f in frames])
 
     def broken_off(self) -> None:
         """Note that nobody knows how many frames are lost before the next one."""
@@ -102,6 +102,14 @@ class Recorder:
                     self._bytes_done += _bytes_of(frames)
         except Exception as error:  # told once, whatever else the end of it came to
             self._failed(str(error) or type(error).__name__)
+
+
+def _remarked(frame: Frame, label: str) -> Frame:
+    """Return a frame under a label of the moment; its own tells whose state steps go on with."""
+    if not label and not frame.label:
+        return frame
+    state_of = frame.label if frame.state_of is None else frame.state_of
+    return replace(frame, label=label or frame.label, state_of=state_of)
 
 
 def _bytes_of(frames: Sequence[Frame]) -> int:

@@ -108,8 +108,9 @@ def _read(
     recordings: Sequence[str], empty: Sequence[Path], places: Path | None
 ) -> tuple[Stack | None, Stack | None]:
     from tactile_graph.errors import UsageError
+    from tactile_graph.foreign_text import tell
     from tactile_graph_pads.calibration.lists import parse_loaded
-    from tactile_graph_pads.learning.recordings import read_places, read_stack
+    from tactile_graph_pads.learning.recordings import off_pad, read_places, read_stack
     from tactile_graph_pads.same_pad import check_same_pad
 
     given = [parse_loaded(text) for text in recordings]
@@ -121,6 +122,8 @@ def _read(
     told = None if places is None else read_places(places, [path.name for path, _ in given])
     rest = read_stack([(path, None) for path in empty]) if empty else None
     objects = read_stack(given, told) if given else None
+    if objects is not None and (off := off_pad(objects)):
+        tell(off)
     if rest is not None and objects is not None:
         check_same_pad(rest.image, objects.image, str(empty[0]), str(given[0].path))
     return rest, objects

@@ -136,6 +136,23 @@ def _weight_g(frame: Frame) -> float:
     return float(sum(w for w in weights if w is not None))
 
 
+def off_pad(stack: Stack) -> str:
+    """Return how many known places lie off the pad, and the first; empty where none does."""
+    left, right, bottom, top = stack.image.extent_cm
+    places = [(k, x, y) for k, of in enumerate(stack.places_cm) for x, y in of or ()]
+    off = [p for p in places if not (left <= p[1] <= right and top <= p[2] <= bottom)]
+    if not off:
+        return ""
+    k, x, y = off[0]
+    in_mm = left <= 0.1 * x <= right and top <= 0.1 * y <= bottom
+    return (
+        f"{len(off)} of {len(places)} known places lie off the pad of {right - left:g} by "
+        f"{bottom - top:g} cm, first x {x:g}, y {y:g} cm in {stack.names[stack.recording[k]]}; "
+        "places are cm from the pad's top left corner, x to the right, y down"
+        + (": are these mm?" if in_mm else "")
+    )
+
+
 def read_places(path: Path, names: Sequence[str]) -> dict[str, dict[int | None, Places]]:
     """Return what lay where in which recording, as a CSV file tells.
 
@@ -172,6 +189,10 @@ def read_places(path: Path, names: Sequence[str]) -> dict[str, dict[int | None, 
             )
         try:
             place = (float(line["x_cm"]), float(line["y_cm"]))
+            if not np.isfinite(place).all():
+                raise ValueError(
+                    f"x_cm and y_cm must be numbers, got {place[0]:g} and {place[1]:g}"
+                )
             frame = int(line["frame"]) if line.get("frame") else None
         except (TypeError, ValueError) as error:
             raise DataError(f"{path}:{n}", f"is no place: {error}") from error

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -232,6 +233,12 @@ class Reading:
         self.index += 1
         self.place += 1
         return frame
+
+    def of_state(self, frame: Frame, state_of: str | None) -> Frame:
+        """Return a frame whose state is that of a sensor or file, whatever its label says."""
+        if state_of is None:
+            return frame
+        return replace(frame, state_of=" ".join(filter(None, (self.label, state_of))))
 
     def frames(
         self,

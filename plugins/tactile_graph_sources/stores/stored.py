@@ -212,6 +212,12 @@ class Stored:
         times = None if np.isnan(columns.time_s).any() else columns.time_s[part]
         return [FrameStack(ImageStack(values[part], *grid), np.arange(first, last), times)]
 
+    @property
+    def _state_of(self) -> str | None:
+        """Whose state steps go on with where no note says it: labels of a live page are remarks."""
+        port = str(self.attributes.get("port", ""))
+        return "" if "pipeline" in self.attributes and port.startswith("source ") else None
+
     def _unsure(self, piece: Piece) -> bool:
         return not self.sure or (self.journaled and piece.block is None)
 
@@ -251,6 +257,7 @@ class Stored:
             gap=bool(columns.gap[i]),
             doubtful=bool(columns.doubtful[i]),
             label=note.get("label", ""),
+            state_of=note.get("state_of", self._state_of),
         )
 
 

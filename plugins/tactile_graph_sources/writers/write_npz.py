@@ -35,8 +35,8 @@ def write_npz(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
     -----
     Arrays: ``values`` (N, rows, columns), ``pitch_cm`` (2,), ``origin_cm`` (2,), ``quantity``;
     where a frame has them ``valid`` (N, rows, columns), ``time_s``, ``device_time_s``, ``gap``,
-    ``doubtful``, ``label`` (N,), and ``truth``, a JSON text: for each frame null or a list of
-    objects with ``kind``, the fields of that shape, ``weight_g`` and ``name``.
+    ``doubtful``, ``label``, ``state_of`` (N,), and ``truth``, a JSON text: for each frame null or
+    a list of objects with ``kind``, the fields of that shape, ``weight_g`` and ``name``.
     """
     arrays = _arrays(list(frames))
     with whole_file(path) as file:
@@ -81,6 +81,9 @@ def _arrays(frames: list[Frame]) -> dict[str, Any]:
             arrays[name] = np.array(marks)
     if any(f.label for f in frames):
         arrays["label"] = np.array([f.label for f in frames])
+    if any(f.state_of is not None for f in frames):
+        whose = [f.label if f.state_of is None else f.state_of for f in frames]
+        arrays["state_of"] = np.array(whose)
     if any(f.truth is not None for f in frames):
         arrays["truth"] = np.array(truth_to_json([f.truth for f in frames]))
     return arrays

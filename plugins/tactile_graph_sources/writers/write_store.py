@@ -319,6 +319,8 @@ def _note(frame: Frame) -> bytes:
     note: dict[str, Any] = {}
     if frame.label:
         note["label"] = frame.label
+    if frame.state_of is not None:
+        note["state_of"] = frame.state_of
     if frame.truth is not None:
         note["truth"] = truth_to_json([frame.truth])
     return json.dumps(note).encode() if note else b""

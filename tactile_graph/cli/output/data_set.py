@@ -126,10 +126,14 @@ class DataSet:
             self._lock.release()
 
     def close_early(self) -> None:
-        """Give all parts their names, but those of recordings of which there are older rows."""
+        """Give all parts their names, but where older rows are of more frames.
+
+        Whether a recording that came to its end goes on later is not known, but how long it was is.
+        """
         kept = []
         for name, recording in list(self._written.items()):
-            if recording.part is not None and not recording.files and name in self._entries:
+            more = name in self._entries and self._entries[name]["frames"] > recording.frames
+            if recording.part is not None and not recording.files and more:
                 recording.part.discard()
                 del self._written[name]
                 kept.append(name)

@@ -13,7 +13,8 @@ import click
 
 from tactile_graph.errors import PluginError, TactileGraphError, UsageError, did_you_mean
 from tactile_graph.exporter import Export, Exporter, Writer, close_early, write_block
-from tactile_graph.plugins.registry import installed
+from tactile_graph.plugins.foreign_code import stdout_again
+from tactile_graph.plugins.registry import CORE, installed
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
@@ -85,7 +86,14 @@ class Output:
         export = Export(self.name, pipeline, asked, self.full, table)
         with self._named("opened"):
             writer = self.exporter.opened(export)
-        return _Named(writer, self._named), table
+        ours = self.name != "-" or installed().offer(OFFERS, self.ending).plugin.name == CORE
+        return _Named(writer, self._named if ours else self._on_stdout), table
+
+    @contextmanager
+    def _on_stdout(self, what: str) -> Iterator[None]:
+        """Name the exporter in errors, and have stdout be what it took it for when it began."""
+        with self._named(what), stdout_again():
+            yield
 
     @contextmanager
     def _named(self, what: str) -> Iterator[None]:

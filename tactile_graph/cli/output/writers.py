@@ -5,9 +5,12 @@ from __future__ import annotations
 import json
 import math
 import os
+import shutil
 import stat
 import sys
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from pathlib import Path
 from typing import Any, BinaryIO, NoReturn, Protocol
 
 from tactile_graph.api.result import Result
@@ -188,13 +191,28 @@ class Csv:
         return csv_lines([columns[name] for name in self.names])
 
 
-def _stdout_for_itself() -> BinaryIO:
-    """Return stdout as a file that stays it, whatever takes its name and descriptor meanwhile."""
+def _stdout_for_itself() -> tuple[BinaryIO, bool]:
+    """Return stdout as a file that stays it, whatever takes its name and descriptor meanwhile.
+
+    And whether it is to be closed in the end: whoever reads a pipe waits for that.
+    """
     sys.stdout.flush()
     try:
-        return open(os.dup(sys.stdout.fileno()), "wb")
+        return open(os.dup(sys.stdout.fileno()), "wb"), True
     except (OSError, ValueError, AttributeError):  # stdout is no file, as in tests
-        return sys.stdout.buffer
+        return sys.stdout.buffer, False
+
+
+def _put_over(new: Path, older: Path) -> None:
+    """Give a file the name of an older one, or write it into that where it cannot be replaced.
+
+    As where it is another person's in a folder for all, or a program has it open on Windows.
+    """
+    try:
+        os.replace(new, older)
+    except OSError:
+        shutil.copyfile(new, older)
+        new.unlink()
 
 
 class LineFile:
@@ -220,7 +238,10 @@ class LineFile:
         """What is to be said of an older one that stays."""
         self._at_once = at_once
         self._older: BinaryIO | None = None
-        self._stdout = _stdout_for_itself() if output == "-" else None
+        self._stdout: BinaryIO | None = None
+        self._is_closed = True
+        if output == "-":
+            self._stdout, self._is_closed = _stdout_for_itself()
         self.broken = False
         """Whether a line could not be written."""
         self._file: BinaryIO | None = None
@@ -274,16 +295,17 @@ class LineFile:
         if self.broken:
             return
         file = self.open()
-        if self.output != "-":
+        if self._is_closed:
             with said(self.lies_at):
                 if self._older is not None:
                     os.fsync(file.fileno())  # or a power cut may leave the name without the content
-                    os.chmod(self.lies_at, stat.S_IMODE(os.fstat(self._older.fileno()).st_mode))
+                    with suppress(OSError):  # a file system may have no such modes
+                        os.chmod(self.lies_at, stat.S_IMODE(os.fstat(self._older.fileno()).st_mode))
                 file.close()
         if self._older is not None:
-            with said(self.output):
+            with said(self.output, f"all frames are in {self.lies_at}"):
                 self._older.close()  # Windows replaces no file that is open
-                os.replace(self.lies_at, os.path.realpath(self.output))
+                _put_over(Path(self.lies_at), Path(os.path.realpath(self.output)))
             sidecar(self.lies_at).unlink(missing_ok=True)
             self.lies_at = self.output
 
@@ -313,6 +335,9 @@ class LineFile:
         self.broken = True
         why = f"cannot be written: {error.strerror or error}"
         if self.output == "-":
+            if self._is_closed:
+                with suppress(OSError):  # it still holds what was refused
+                    file.close()
             raise UsageError(f"stdout {why}") from error
         if is_plain(self.lies_at):
             os.ftruncate(file.fileno(), self._n_bytes)

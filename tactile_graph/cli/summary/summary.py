@@ -122,7 +122,8 @@ class Group:
             mean = math.nan
         if half_turn is not None and turned is not None and numbers.n:
             axes = max(-numbers.least, numbers.most) <= 0.5 * half_turn
-            if axes and turned.most - turned.least < numbers.most - numbers.least:
+            both = numbers.least < 0.0 <= numbers.most  # of one sign, they lie as near as turned
+            if axes and both and turned.most - turned.least < numbers.most - numbers.least:
                 numbers = turned
             widest = 0.5 * half_turn if axes else half_turn
         quantiles = numbers.quantiles(SHARES)

@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_graph.engine.calls.context import Context
 from tactile_graph.engine.calls.each import for_each, mapped, told_of_gaps
-from tactile_graph.engine.calls.isolated import Host, Isolated, isolated_step
+from tactile_graph.engine.calls.isolated import Host, isolated_step
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.steps.signature import Kind
 
@@ -28,8 +28,6 @@ def make_call(node: Node, context: Context) -> Call:
     if node.kind is NodeKind.MAP:
         return mapped(node, context)
     call = _instance(node, context, context.hosts)
-    if isinstance(call, Isolated):
-        context.apart[node.name] = call.host
     by_label = node.stateful and not node.is_sink
     call = _by_label(node, call, context) if by_label else call
     call = told_of_gaps(node, call)
@@ -44,7 +42,8 @@ def _by_label(node: Node, first: Call, context: Context) -> Call:
         hosts = {node.isolation.process: context.apart[node.name]}
 
     def call(*args: Any, **kwargs: Any) -> Any:
-        label = context.frame.label
+        frame = context.frame
+        label = frame.label if frame.state_of is None else frame.state_of
         instance = instances.get(label)
         if instance is None:
             instance = _instance(node, context, hosts) if instances else first
@@ -61,10 +60,13 @@ def _instance(node: Node, context: Context, hosts: dict[str, Host]) -> Call:
     return _with_gap(call, node.signature.gap, context) if node.signature.gap else call
 
 
-def _bound(node: Node, hosts: dict[str, Host], **injected: Any) -> Call:
+def _bound(node: Node, context: Context, hosts: dict[str, Host], **injected: Any) -> Call:
     """Return a node's step with its settings, as what costs least to call in every frame."""
     if node.isolation is not None:
-        return isolated_step(node, injected, hosts)
+        step = isolated_step(node, injected, hosts)
+        if hosts is context.hosts:  # of the node's first instance
+            context.apart[node.name] = step.host
+        return step
     bound: Any = node.bound(**injected)
     assert node.signature is not None
     call: Call = bound.__call__ if node.signature.kind is Kind.CLASS else bound
@@ -91,11 +93,11 @@ def _seeded(node: Node, context: Context, hosts: dict[str, Host]) -> Call:
     signature = node.signature
     assert signature is not None
     if not signature.rng:
-        return _bound(node, hosts)
+        return _bound(node, context, hosts)
     words = [context.seed, int(node.key[:16], 16)]
     if signature.rng_at_init:
-        return _bound(node, hosts, **{signature.rng: np.random.default_rng(words)})
-    step = _bound(node, hosts)
+        return _bound(node, context, hosts, **{signature.rng: np.random.default_rng(words)})
+    step = _bound(node, context, hosts)
 
     def call(*args: Any, **kwargs: Any) -> Any:
         # Of the frame's number too: a frame gets the same numbers wherever a run starts.

@@ -112,7 +112,13 @@ def mapped(node: Node, context: Context) -> Call:
             mask = None if mask.__class__ in NO_VALUE else mask
             its = {name: values[name] for name in given}
             inner = InnerFrame(
-                image, outer.index, outer.time_s, label=outer.label, mask=mask, given=its
+                image,
+                outer.index,
+                outer.time_s,
+                label=outer.label,
+                mask=mask,
+                state_of=outer.state_of,
+                given=its,
             )
             results.append(run(inner, (*context.item, i)))
             lacking.append(None)

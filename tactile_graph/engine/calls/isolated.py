@@ -170,11 +170,23 @@ class Host:
         ------
         UsageError
             If the process cannot run it, or does not start.
+        Skip
+            While it is being started anew: frames of a new label wait no more than others.
         """
+        if self._orders:
+            self._be_there()
         self._orders.append(order)
         self._process.send(order.pickled)
         self._take_note(START_S)
         return len(self._orders) - 1
+
+    def _be_there(self) -> None:
+        """Raise Skip where the process is being started anew; start it if it has ended since."""
+        if self._n_made < len(self._orders):
+            self._take_note(0.0)
+        elif not self._process.messages.empty():  # nobody has asked it for anything
+            self._start_anew(0, self._process.end_in_words())
+            self._take_note(0.0)
 
     def run(self, number: int, args: Any, kwargs: Mapping[str, Any], limit_s: float | None) -> Any:
         """Return what a step gives; raises what `Isolated` does."""

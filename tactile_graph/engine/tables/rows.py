@@ -98,9 +98,12 @@ def scalars(name: str, value: Any) -> dict[str, Any]:
         return {name: "done"}
     shown = fields_in_tables(value.__class__)
     if shown:
-        return {f"{name}.{field}": getattr(value, field) for field in shown}
+        row = {f"{name}.{field}": getattr(value, field) for field in shown}
+        if not hasattr(value, "columns_shown"):  # nobody promised that they hold what they say
+            row = {key: _single(one) for key, one in row.items()}
+        return row
     fields = getattr(value, "_fields", ())
-    row: dict[str, Any] = {}
+    row = {}
     for field in fields:
         inner = getattr(value, field)
         if isinstance(inner, list | tuple) and "count" in fields:
@@ -113,6 +116,13 @@ def scalars(name: str, value: Any) -> dict[str, Any]:
         return {f"{name}.count": len(with_value(value))}
     count = getattr(value, "count", None)
     return {f"{name}.count": count} if isinstance(count, int) else {}
+
+
+def _single(value: Any) -> Any:
+    """Return a number, a text or yes/no as it is; None in place of anything else."""
+    if isinstance(value, np.ndarray):
+        value = value.item() if value.ndim == 0 else None
+    return value if isinstance(value, bool | int | float | str | np.generic) else None
 
 
 def as_data(value: Any, full: bool = True) -> Any:

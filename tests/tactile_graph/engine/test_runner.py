@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 
 from helpers_graphs import STEPS, cases, frame, registry, shown
 from tactile_graph import Image, Pipeline, loads
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import Degenerate, UsageError
 
 FLOW = """
 pipeline: sums
@@ -117,3 +117,17 @@ def test_an_error_that_passes_is_not_kept_for_equal_frames_nor_for_all() -> None
     results = [runner(frame(1, i)) for i in range(3)]
     assert [len(r) for r in results] == [0, 2, 2]
     assert [r.reused for r in results] == [False, False, True]
+
+
+def test_what_hangs_on_no_frame_and_fails_for_its_data_is_tried_once() -> None:
+    n = 0
+
+    def table() -> int:
+        nonlocal n
+        n += 1
+        raise Degenerate("no points")
+
+    text = "pipeline: p\nnodes: {b: {step: table}}\noutputs: [b]"
+    runner = loads(text, "p.yaml", registry({"table": table})).runner()
+    assert {runner(frame(i, i)).outcome("b").reason for i in range(3)} == {"no points"}
+    assert n == 1

@@ -285,6 +285,15 @@ def test_a_pipeline_that_does_not_identify_is_refused(recordings):
     assert "pipeline 'features' has no such node; name one with --only" in text
 
 
+def test_a_database_may_have_any_name(recordings):
+    learned(recordings)
+    name = 'my "cups" \N{HOT BEVERAGE}\N{GRINNING FACE}.sqlite'
+    Path("tactile-objects.sqlite").rename(name)
+    code, text = answer("identify", recordings["large"], "--database", name, "--frames", "1")
+    assert code == 0
+    assert text.splitlines()[1].split()[1] == "large"
+
+
 @pytest.mark.slow
 def test_learning_says_how_well_the_objects_are_told_apart(recordings):
     assert "named right" not in answer("learn", "small", recordings["small"])[1]

@@ -8,6 +8,7 @@ import pytest
 
 from helpers_classifiers import MAT, PAIR, SETTING, lesson, three_objects
 from tactile_graph.errors import DataError, UsageError
+from tactile_graph_classifiers.database.instrument import Instrument
 from tactile_graph_classifiers.database.rows import Lesson, Setting
 from tactile_graph_classifiers.database.statistics import Statistics
 from tactile_graph_classifiers.database.store import ObjectDatabase
@@ -117,6 +118,13 @@ def test_readings_of_another_pitch_go_into_a_database_of_their_own(database):
     ):
         database.learn(fine, [lesson("b", (1, 1))])
     assert database.summaries()[0].n_readings == 4
+
+
+@pytest.mark.parametrize("number", [int, np.float64, np.float32])
+def test_pitches_of_any_kind_of_number_are_sealed_as_they_are_read(database, number):
+    instrument = Instrument(16, 16, number(2), number(2))
+    database.learn(SETTING._replace(instrument=instrument), [lesson("a", (1, 1))])
+    assert database.known().instrument == Instrument(16, 16, 2.0, 2.0)
 
 
 def test_all_lessons_are_learned_or_none(database):

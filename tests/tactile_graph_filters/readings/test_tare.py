@@ -130,3 +130,13 @@ def test_a_pad_without_noise_is_touched_from_two_steps_of_its_readings_on(empty,
             found = tare(image_of(empty + load + np.zeros((3, 3)), "counts"), gap=1.0)
     assert found.values.tolist() == pytest.approx((level + 1e-9) * np.eye(3))
     assert tare._touched == pytest.approx(level, abs=1e-300)
+
+
+def test_a_single_frame_of_the_empty_pad_leaves_the_drift_to_be_followed():
+    rng = np.random.default_rng(0)
+    tare = Tare(n_frames=1, drift_s=2.0)
+    rest = rng.normal(100.0, 20.0, (8, 8))
+    for k in range(400):
+        values = rest + 0.02 * k + rng.normal(0.0, 0.5, (8, 8))
+        found = tare(image_of(values, "counts"), gap=0.05)
+    assert np.abs(found.values).max() < 4.0

@@ -54,6 +54,16 @@ def test_an_empty_pad_of_few_cells_is_as_seldom_reached_as_one_of_more(shape):
     assert reached <= (0.016 if 5 <= math.prod(shape) <= 8 else 0.004) * n
 
 
+@pytest.mark.parametrize("shape", [(2, 3), (2, 4), (3, 3), (3, 4), (4, 4), (4, 5)])
+@pytest.mark.parametrize("loads", [(100.0,), (60.0, 100.0)])
+def test_loads_far_above_the_noise_of_few_cells_are_reached(shape, loads):
+    rng = np.random.default_rng(6)
+    for _ in range(200):
+        values = rng.normal(100.0, 1.0, shape)
+        values.flat[: len(loads)] += loads
+        assert noise_level(image_of(values)) <= values.max()
+
+
 def test_from_8_by_8_cells_on_and_without_noise_the_level_is_the_plain_one():
     values = np.random.default_rng(5).normal(size=(8, 8))
     low, base, _ = lower_readings(image_of(values))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 
@@ -59,6 +60,56 @@ def test_every_frame_is_kept_with_the_label_of_its_moment(tmp_path: Path) -> Non
     assert [f.label for f in read] == ["cup"] * 3 + ["ball"] * 2
     assert [f.image.values[0, 0] for f in read] == [0, 1, 2, 5, 6]
     assert failures == []
+
+
+STATE = """
+pipeline: tared
+nodes: {tared: {step: tare, in: frame, with: {n_frames: 2}}}
+outputs: [tared]
+"""
+
+
+@pytest.mark.parametrize("older", [False, True])
+def test_state_goes_on_where_the_label_of_the_moment_changes(tmp_path: Path, older: bool) -> None:
+    pytest.importorskip("zarr", reason="the extra `zarr` is not there")
+    from tactile_graph import loads
+    from tactile_graph_sources.writers.write_npz import write_npz
+    from tactile_graph_sources.writers.write_store import StoreWriter
+
+    about = {"port": "source simulate", "pipeline": "tared"}
+    recorder = Recorder(tmp_path, "tared", "", about, lambda _: None)
+    recorder.take(frames(0, 3), 0)
+    recorder.label = "cup"
+    recorder.take(frames(3, 2), 0)
+    recorder.close()
+    path = recorder.path
+    if older:  # than notes on whose state it is
+        path = tmp_path / "older.zarr"
+        with StoreWriter(path, about=about) as store:
+            for k, frame in enumerate(frames(0, 5)):
+                store.write(replace(frame, label="cup" if k > 2 else ""))
+    source = loads(STATE).with_source("recording", path=str(path))
+    assert [r["tared"].peak for r in source.stream() if "tared" in r] == [0.5, 1.5, 2.5, 3.5]
+    write_npz(tmp_path / "same.npz", source.frames())
+    again = source.with_source("recording", path=[str(path), str(tmp_path / "same.npz")])
+    rows = [(r.frame.label, r["tared"].peak) for r in again.stream() if "tared" in r]
+    assert [peak for _, peak in rows] == [0.5, 1.5, 2.5, 3.5] * 2
+    assert [label for label, _ in rows[-2:]] == ["same.npz cup"] * 2
+
+
+def test_a_label_of_the_moment_leaves_each_sensor_its_state(tmp_path: Path) -> None:
+    pytest.importorskip("zarr", reason="the extra `zarr` is not there")
+    from tactile_graph import load
+
+    recorder = Recorder(tmp_path, "two", "", {}, lambda _: None)
+    both = [replace(f, label=name) for f in frames(0, 2) for name in ("left", "right")]
+    recorder.take(both[:2], 0)
+    recorder.label = "cup"
+    recorder.take(both[2:], 0)
+    recorder.close()
+    read = list(load("circle-1").with_source("recording", path=str(recorder.path)).frames())
+    assert [f.label for f in read] == ["left", "right", "cup", "cup"]
+    assert [f.state_of for f in read] == ["left", "right"] * 2
 
 
 def test_the_frame_after_a_break_of_unknown_length_follows_a_gap(tmp_path: Path) -> None:

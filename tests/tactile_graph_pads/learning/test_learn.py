@@ -12,7 +12,7 @@ from helpers_learning import MadeUpPad
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_pads.learning.learn import LearnedPad, learn_pad
-from tactile_graph_pads.learning.recordings import Stack, read_places, read_stack
+from tactile_graph_pads.learning.recordings import Stack, off_pad, read_places, read_stack
 from tactile_graph_pads.learning.summary import summary
 from tactile_graph_sources.writers.write_npz import write_npz
 
@@ -133,3 +133,18 @@ def test_places_are_read_by_name_and_frame(tmp_path: Path) -> None:
     path.write_text("recording,x_cm,y_cm\na.npz,one,2\n")
     with pytest.raises(DataError, match=r"p.csv:2: is no place"):
         read_places(path, ["a.npz"])
+    path.write_text("recording,x_cm,y_cm\na.npz,nan,2\n")
+    with pytest.raises(DataError, match=r"p.csv:2: is no place: x_cm and y_cm must be numbers"):
+        read_places(path, ["a.npz"])
+
+
+def test_places_off_the_pad_are_counted_and_the_first_named(tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    write_npz(path, [Frame.of(np.ones((4, 4)), quantity="raw", index=k) for k in range(3)])
+    told = {"a.npz": {0: ((1.0, 2.0),), 1: ((30.0, 20.0), (-9.0, 1.0))}}
+    said = off_pad(read_stack([(path, None)], told))
+    assert said.startswith(
+        "2 of 3 known places lie off the pad of 4 by 4 cm, first x 30, y 20 cm in "
+    )
+    assert said.endswith("are these mm?")
+    assert off_pad(read_stack([(path, None)])) == ""

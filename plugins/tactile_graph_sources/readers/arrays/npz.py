@@ -43,7 +43,8 @@ SMALL, LARGE = 64_000_000, 256_000_000
 WORTH_MAPPING = 1_000_000
 """Bytes of an array, stored as it is, from which on it is mapped, not read."""
 _UNPACK = "unpack it, and give those that are recordings"
-OURS = ("values", "valid", "time_s", "device_time_s", "gap", "doubtful", "label", "quantity",
+OURS = ("values", "valid", "time_s", "device_time_s", "gap", "doubtful", "label", "state_of",
+        "quantity",
         "pitch_cm", "origin_cm", "truth")  # fmt: skip
 
 
@@ -343,6 +344,7 @@ class _Ours(NamedTuple):
     gaps: NDArray[Any] | None
     doubtful: NDArray[Any] | None
     labels: NDArray[Any] | None
+    states: NDArray[Any] | None
     truths: list[Truth] | None
 
     @property
@@ -366,13 +368,14 @@ def _ours(reading: Reading, arrays: Archive) -> _Ours:
     gaps = arrays.optional("gap", (n,), "b")
     doubtful = arrays.optional("doubtful", (n,), "b")
     labels = arrays.optional("label", (n,), "U")
+    states = arrays.optional("state_of", (n,), "U")
     quantity = str(q) if (q := arrays.optional("quantity", (), "U")) is not None else "raw"
     if unknown := unknown_quantity([quantity]):
         raise DataError(arrays.where, unknown)
     pitch, origin = _pair(arrays, "pitch_cm", 0.0), _pair(arrays, "origin_cm", -np.inf)
     truths = _truths(reading, arrays, n)
     grid = {"pitch_cm": pitch, "origin_cm": origin, "quantity": quantity}
-    return _Ours(values, times, grid, valid, device_times, gaps, doubtful, labels, truths)
+    return _Ours(values, times, grid, valid, device_times, gaps, doubtful, labels, states, truths)
 
 
 def _frames_alone(ours: _Ours, reading: Reading, low: int, high: int) -> Iterator[Any]:
@@ -397,6 +400,7 @@ def _frames_alone(ours: _Ours, reading: Reading, low: int, high: int) -> Iterato
                 device_time_s=_time(ours.device_times, k),
                 gap=gaps is not None and bool(gaps[k]),
             )
+            frame = reading.of_state(frame, None if ours.states is None else str(ours.states[k]))
             unsure = doubtful is not None and bool(doubtful[k])
             yield replace(frame, doubtful=True) if unsure else frame
 

@@ -60,6 +60,7 @@ def as_told(reading: Reading, frames: Iterable[Frame | FrameStack]) -> Iterator[
             device_time_s=stored.device_time_s,
             gap=stored.gap,
         )
+        frame = reading.of_state(frame, stored.state_of)
         yield replace(frame, doubtful=True) if stored.doubtful else frame
 
 

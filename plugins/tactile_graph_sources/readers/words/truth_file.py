@@ -13,7 +13,8 @@ from typing import NamedTuple
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.foreign_text import tell
 from tactile_graph.steps.injected import Report
-from tactile_graph.wires import Circle, Ellipse, Frame, Rectangle, TrueObject
+from tactile_graph.wires import Circle, Ellipse, Frame, Image, Rectangle, Shape, TrueObject
+from tactile_graph_sources.placement import is_off
 from tactile_graph_sources.readers.words.counting import BY, By, Counting
 from tactile_graph_sources.readers.words.truth import Truth, truth_from_json
 
@@ -27,11 +28,23 @@ COLUMNS = (*BY, "kind", *sorted({f for _, fields in SHAPES.values() for f in fie
 MOST_BYTES = 1 << 28
 MOST_DIGITS = 12
 """Of a frame's number."""
-Spans = list[tuple[range | None, TrueObject | None]]
+_Extent = tuple[float, float, float, float]
+_Where = tuple[int, ...]
+
+
+class _Said(NamedTuple):
+    """What a line of a table says: in which frames (None: all) lies what (None: nothing)."""
+
+    span: range | None
+    lies: TrueObject | None
+    line: int
+
+
+Spans = list[_Said]
 
 
 class _Table(NamedTuple):
-    """A table of truth: how it counts frames, and what lies in which; None is all, and nothing."""
+    """A table of truth: how it counts frames, and what lies in which."""
 
     by: By
     spans: Spans
@@ -43,8 +56,9 @@ def with_truth(
     """Yield the frames with the truth that a file holds, instead of what the recording held.
 
     Frames are counted as they stand in the recording (`Frame.place`), so that one which was left
-    out, by ``skip`` too, keeps its number; what may surprise about that is told on stderr. So is of
-    how many frames the recording held a truth, at the end or when this is closed.
+    out, by ``skip`` too, keeps its number; what may surprise about that is told on stderr. So is,
+    at the end or when this is closed, of how many frames the recording held a truth, and which
+    objects lie wholly off the pad.
 
     Parameters
     ----------
@@ -65,20 +79,22 @@ def with_truth(
     DataError
         If the file cannot be understood, speaks of frames that are not there, or may mean others.
     """
-    replaced = _Replaced()
+    replaced, off = _Replaced(), _Off()
     kept = replaced.watch(frames)
     if path.suffix.lower() == ".json":
-        attached = _by_list(kept, _listed(path), path, report)
+        attached = _by_list(kept, _listed(path), path, report, off)
     else:
-        attached = _by_spans(kept, _spans(path), path, report)
+        attached = _by_spans(kept, _spans(path), path, report, off)
     try:
         for frame in attached:
             replaced.n_unknown += replaced.was_known and frame.truth is None
             yield frame
     except GeneratorExit:  # who takes them has enough
         replaced.tell(str(path))
+        off.tell(str(path))
         raise
     replaced.tell(str(path))
+    off.tell(str(path))
 
 
 class _Replaced:
@@ -99,6 +115,37 @@ class _Replaced:
             told = f"{path}: replaces the truth that the recording held of {_frames(self.n)}"
             of_it = f"; of {self.n_unknown} of them it says nothing" if self.n_unknown else ""
             tell(told + of_it)
+
+
+class _Off:
+    """Notes which objects of a file lie wholly off the pad."""
+
+    def __init__(self) -> None:
+        self._seen: set[tuple[_Where, _Extent]] = set()
+        self._off: dict[_Where, tuple[float, float, _Extent]] = {}
+
+    def see(self, where: _Where, lies: TrueObject, image: Image) -> None:
+        """Look at an object, by its line or its frame and number, and the pad it is to lie on."""
+        extent_cm, shape = image.extent_cm, lies.shape
+        if (where, extent_cm) in self._seen or not isinstance(shape, Shape):
+            return
+        self._seen.add((where, extent_cm))
+        if is_off(shape, extent_cm):
+            self._off.setdefault(where, (shape.x_cm, shape.y_cm, extent_cm))
+
+    def tell(self, path: str) -> None:
+        if not self._off:
+            return
+        n, n_off = len({where for where, _ in self._seen}), len(self._off)
+        where, (x, y, (left, right, bottom, top)) = min(self._off.items())
+        named = "line {}" if len(where) == 1 else "frame {}, object {}"
+        in_mm = left <= 0.1 * x <= right and top <= 0.1 * y <= bottom
+        tell(
+            f"{path}: {n_off} of {n} object{'s' if n != 1 else ''} lie{'s' if n_off == 1 else ''} "
+            f"wholly off the pad of {right - left:g} by {bottom - top:g} cm, first that "
+            f"of {named.format(*where)} at x {x:g}, y {y:g} cm; lengths are cm from the pad's top "
+            f"left corner, x to the right, y down{': are these mm?' if in_mm else ''}"
+        )
 
 
 def _frames(n: int) -> str:
@@ -124,13 +171,15 @@ def _listed(path: Path) -> list[Truth]:
 
 
 def _by_list(
-    frames: Iterator[Frame], truths: list[Truth], path: Path, report: Report | None
+    frames: Iterator[Frame], truths: list[Truth], path: Path, report: Report | None, off: _Off
 ) -> Iterator[Frame]:
     counting, n = Counting(str(path), "places"), len(truths)
     for frame in frames:
         place = counting.of(frame)
         if place >= n:
             raise DataError(str(path), f"holds the truth of {n} frames, there are more")
+        for j, o in enumerate(truths[place] or ()):
+            off.see((place, j), o, frame.image)
         yield replace(frame, truth=truths[place])
     held = _n_places(counting, report)
     if n != held:
@@ -143,15 +192,18 @@ def _by_list(
 
 
 def _by_spans(
-    frames: Iterator[Frame], table: _Table, path: Path, report: Report | None
+    frames: Iterator[Frame], table: _Table, path: Path, report: Report | None, off: _Off
 ) -> Iterator[Frame]:
     counting, spans = Counting(str(path), table.by), table.spans
-    beyond = max((span.stop - 1 for span, _ in spans if span is not None), default=-1)
+    beyond = max((said.span.stop - 1 for said in spans if said.span is not None), default=-1)
     for frame in frames:
         number = counting.of(frame) if beyond >= 0 else 0
-        lie = [o for span, o in spans if span is None or number in span]
-        known = tuple(o for o in lie if o is not None)
-        yield replace(frame, truth=known if lie else None)
+        about = [said for said in spans if said.span is None or number in said.span]
+        for said in about:
+            if said.lies is not None:
+                off.see((said.line,), said.lies, frame.image)
+        known = tuple(said.lies for said in about if said.lies is not None)
+        yield replace(frame, truth=known if about else None)
     if beyond < 0:
         return
     if table.by == "numbers" and beyond > counting.last:
@@ -177,17 +229,15 @@ def _spans(path: Path) -> _Table:
     header = [n.strip().lower() for n in next(rows, [])]
     by = _checked_header(f"{path}:1", header)
     spans: Spans = []
-    lines: list[int] = []
     for fields in rows:
         if any(f.strip() for f in fields):
             where = f"{path}:{rows.line_num}"
             row = _row(where, header, [f.strip() for f in fields])
-            spans.append((_span(where, by, row[by]), _object(where, row)))
-            lines.append(rows.line_num)
+            spans.append(_Said(_span(where, by, row[by]), _object(where, row), rows.line_num))
     if not spans:
         told = "a header and no line below it; each line says what lies in which frames"
         raise DataError(str(path), told)
-    _refuse_contradictions(path, spans, lines)
+    _refuse_contradictions(path, spans)
     return _Table(by, spans)
 
 
@@ -203,11 +253,11 @@ def _row(where: str, header: list[str], fields: list[str]) -> dict[str, str]:
     return dict(zip(header, fields[:n] + [""] * (n - len(fields)), strict=True))
 
 
-def _refuse_contradictions(path: Path, spans: Spans, lines: list[int]) -> None:
+def _refuse_contradictions(path: Path, spans: Spans) -> None:
     """Refuse a frame of which one line says that nothing lies there, and another that something."""
     ends = {False: (-1, 0), True: (-1, 0)}  # of frames said to be empty, and not: up to, by line
     whole = range(10**MOST_DIGITS)
-    said = [(span or whole, o is not None, n) for (span, o), n in zip(spans, lines, strict=True)]
+    said = [(span or whole, lies is not None, line) for span, lies, line in spans]
     for span, holds, line in sorted(said, key=lambda one: one[0].start):
         stop, other = ends[not holds]
         if span.start < stop:

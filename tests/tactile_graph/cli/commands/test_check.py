@@ -164,10 +164,16 @@ def test_the_files_that_a_source_names_are_opened_and_all_that_is_wrong_told(
     Path("pad.yaml").write_text("geometry: {rows: 12, columns: -3}\n")
     Path("mine.yaml").write_text("preset: mine\ntransport: {baud: fast}\n")
     Path("words.csv").write_text("hello there\n")
+    Path("off.yaml").write_text(
+        "objects: [{shape: disc, weight_g: 9, radius_cm: 2, place: [200, 3]}]\n"
+    )
     np.savez("flat.npz", values=np.ones((4, 8, 8)))
     wrong = {
         "simulate, with: {scene: scene.yaml}": ["scene.yaml:2:", "circel"],
         "simulate, with: {scene: discsss}": ["p.yaml:1:16: source, scene: no scene named", "discs"],
+        "simulate, with: {scene: off.yaml, pad: plain}": [
+            "p.yaml:1:16: source: object 1: at place [200, 3] it lies wholly off the pad of 20.5",
+        ],
         "simulate, with: {pad: pad.yaml}": ["pad.yaml:1:31: columns must be >= 1, got -3"],
         "serial, with: {port: /dev/x, preset: mine.yaml}": ["mine.yaml:2:19: transport.baud"],
         "recording, with: {path: words.csv}": ["p.yaml:1:16: source, path: words.csv: no rec"],

@@ -87,6 +87,14 @@ def test_angles_of_axes_are_told_from_where_fewest_lie(centre: float, n: int) ->
     assert told["mean"] is None
 
 
+def test_angles_below_0_alone_stay_there() -> None:
+    rng = np.random.default_rng(0)
+    for _ in range(20):  # however the difference of two of them is rounded
+        rows = [f"{i},ok,{a}" for i, a in enumerate(rng.uniform(-80.0, -1.0, 20))]
+        Path("axes.csv").write_text("\n".join(["frame,r.outcome,r.angle_deg", *rows]))
+        assert of("axes.csv")["quantities"]["r.angle_deg"]["most"] < 0.0
+
+
 def test_angles_all_around_have_no_order() -> None:
     rows = [f"{i},ok,{a}" for i, a in enumerate(np.linspace(-89.0, 90.0, 180))]
     Path("axes.csv").write_text("\n".join(["frame,r.outcome,r.angle_deg", *rows]))

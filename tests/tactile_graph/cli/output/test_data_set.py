@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -162,6 +163,28 @@ def test_older_rows_stay_where_a_run_ends_within_their_recording(
     assert "of what was under way, left.txt, the older rows stay" in got.stderr
     assert rows() == {"left.txt": 5}
     assert [p.name for p in Path("results").rglob(".part*")] == []
+
+
+def test_rows_of_a_recording_that_came_to_its_end_replace_the_older_where_a_run_ends_later(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from tactile_graph.cli.commands.run import _Run
+
+    run("left.txt", "right.txt")
+    n = rows()["left.txt"]
+    older = {p: p.stat().st_mtime_ns for p in Path("results").rglob("*.parquet")}
+    real = _Run._results
+
+    def results(self: _Run) -> Iterator[object]:
+        yield from islice(real(self), n + 1)
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(_Run, "_results", results)
+    got = run("left.txt", "right.txt")
+    assert got.exit_code == 130
+    assert "of what was under way, right.txt, the older rows stay" in got.stderr
+    newer = {p: p.stat().st_mtime_ns for p in older}
+    assert [p.parent.name for p in older if newer[p] != older[p]] == ["recording=left.txt"]
 
 
 def test_a_recording_that_goes_on_after_others_has_another_part(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from importlib import import_module
 from pathlib import Path
 
@@ -61,6 +62,16 @@ def test_one_whose_ending_is_taken_is_had_by_its_plugins_name(exporters: Path) -
     assert written("-o", "q.csv").startswith("frame,")
     assert written("-o", "q.words.csv").startswith("frame,")  # the ending alone says the form
     assert "words.csv" in call("plugins").stdout
+
+
+def test_what_one_writes_to_stdouts_own_descriptor_gets_there(
+    exporters: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    words = import_module("tg_words").Words
+    monkeypatch.setattr(words, "write", lambda self, result: os.write(1, b"line\n"))
+    monkeypatch.setattr(words, "close", lambda self: None)
+    assert call("run", "p.yaml", "-o", "-", "--format", "words.csv").exit_code == 0
+    assert capfd.readouterr().out == 4 * "line\n"
 
 
 @pytest.mark.parametrize("method", ["__init__", "write", "close"])

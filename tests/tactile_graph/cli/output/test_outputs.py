@@ -200,6 +200,38 @@ def test_an_older_output_stays_whole_until_the_next_is(tmp_path: Path) -> None:
     assert not (tmp_path / "out.unfinished.csv").exists()
 
 
+def test_an_older_output_that_cannot_be_replaced_is_written_into(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As another person's file in a folder for all, or one that a program has open on Windows."""
+
+    def refused(*paths: object) -> None:
+        raise PermissionError(errno.EPERM, "Operation not permitted")
+
+    (tmp_path / "out.csv").write_text("older, and longer\n")
+    before = (tmp_path / "out.csv").stat().st_ino
+    writer = LineFile("out.csv", JsonLines())
+    writer.open().write(b"newer\n")
+    monkeypatch.setattr(os, "replace", refused)
+    monkeypatch.setattr(os, "chmod", refused)
+    writer.close()
+    assert (tmp_path / "out.csv").read_text() == "newer\n"
+    assert (tmp_path / "out.csv").stat().st_ino == before
+    assert not (tmp_path / "out.unfinished.csv").exists()
+
+
+def test_who_reads_stdout_to_its_end_waits_for_no_run_that_is_done(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    before = os.listdir("/proc/self/fd") if os.path.isdir("/proc/self/fd") else []
+    writer = LineFile("-", JsonLines())
+    writer.open().write(b"line\n")
+    writer.close()
+    assert not before or len(os.listdir("/proc/self/fd")) == len(before)
+    sys.stdout.write("more\n")
+    assert capfd.readouterr().out == "line\nmore\n"
+
+
 @pytest.mark.parametrize(
     "command",
     [("schema", "-o", "out"), ("graph", "discs", "--format", "svg", "-o", "out")],

@@ -31,6 +31,7 @@ OWN = {
     "moody": steps.moody,
     "raises": steps.raises,
     "counting": steps.Counting,
+    "timed": steps.Timed,
     "elsewhere": steps.elsewhere,
     "readiness": kernel_steps.readiness,
     "unsendable": steps.unsendable,
@@ -133,6 +134,31 @@ def test_each_label_has_its_state_in_the_nodes_one_process() -> None:
     got = [runner(replace(frame(1, k), label=name))["risky"] for k, name in enumerate("aabab")]
     assert [first for first, *_ in got] == [1, 2, 1, 3, 2]
     assert len(runner.processes) == 1
+
+
+def test_a_step_that_is_told_of_time_keeps_state_of_each_label_apart_from_home() -> None:
+    runner = pipeline("step: timed, in: frame, isolated: true").runner()
+    frames = [replace(frame(1, k), label=name, time_s=0.5 * k) for k, name in enumerate("aab")]
+    assert [runner(f)["risky"] for f in frames] == [(1, None), (2, 0.5), (1, None)]
+    assert [*runner.processes] == ["risky"]
+
+
+@pytest.mark.parametrize("in_a_call", [True, False])
+def test_a_new_label_does_not_wait_for_a_process_that_starts_anew(in_a_call: bool) -> None:
+    runner = pipeline("step: timed, in: frame, isolated: true").runner()
+    assert runner(frame(1))["risky"] == (1, None)
+    if in_a_call:
+        runner(frame(steps.CRASHES, 1))
+    else:  # as one whose memory the system wants
+        host = runner._apart["risky"]
+        os.kill(host._process._process.pid, signal.SIGKILL)
+        host._process._process.wait()
+        while host._process.messages.empty():
+            time.sleep(0.01)
+    outcome = runner(replace(frame(1, 2), label="b")).outcome("risky")
+    assert "is being started anew: the last ended its process by SIGKILL" in outcome.reason
+    assert run_until_back(runner, 1)[-1]["risky"] == (1, None)
+    assert runner(replace(frame(1, 3), label="b"))["risky"] == (1, None)
 
 
 def test_it_runs_in_another_process_which_ends_with_the_runner() -> None:

@@ -78,6 +78,15 @@ def test_a_dataclass_has_its_numbers_texts_and_counts_in_tables_and_a_dict_is_to
     assert without_columns([known]) == ""
 
 
+def test_a_field_of_a_dataclass_that_holds_other_than_it_says_has_no_cell():
+    held: Any = np.array([1.0, 2.0])
+    assert scalars("r", Record(held, None, held)) == {
+        "r.total": None, "r.name": None, "r.side": "left"
+    }  # fmt: skip
+    held = np.array(1.5)
+    assert type(scalars("r", Record(held, "n", held))["r.total"]) is float
+
+
 def test_a_record_that_counts_its_list_itself_gets_one_column_for_it():
     assert [c.key for c in _columns("c", "c", Counted)] == ["c.count"]
 

@@ -6,6 +6,8 @@ import json
 import math
 import re
 from collections.abc import Iterator
+from contextlib import closing
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +60,27 @@ def test_a_rectangle_is_the_same_whichever_side_comes_first(tmp_path: Path) -> N
     shapes = [truth[0].shape for truth in found if truth]
     assert all(isinstance(s, Rectangle) and s.length_cm == 6.0 for s in shapes)
     assert [s.angle_deg for s in shapes if isinstance(s, Rectangle)] == pytest.approx([30.0] * 3)
+
+
+def test_objects_wholly_off_the_pad_are_counted_the_first_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table, listed = tmp_path / "truth.csv", tmp_path / "truth.json"
+    table.write_text(f"{CIRCLE}\n0-1,circle,1,2,3\n2,circle,12,8,3\n0-3,circle,12,15,3\n")
+    off = TrueObject(Circle(-4.0, 1.0, 3.0))
+    listed.write_text(truth_to_json([None, (TrueObject(Circle(1.0, 1.0, 1.0)), off), (off,), ()]))
+    list(with_truth(frames(), table))
+    with closing(with_truth(frames(), listed)) as known:  # not all are taken
+        list(islice(known, 3))
+    of_table, of_list = capsys.readouterr().err.splitlines()
+    assert "truth.csv: 2 of 3 objects lie wholly off the pad of 2 by 2 cm, first" in of_table
+    assert "that of line 3 at x 12, y 8 cm; lengths are cm from the pad's" in of_table
+    assert of_table.endswith("y down: are these mm?")
+    assert "first that of frame 1, object 1 at x -4, y 1 cm" in of_list
+    assert of_list.endswith("y down")
+    table.write_text(f"{CIRCLE}\nall,circle,3,1,1.5\n")
+    list(with_truth(frames(), table))
+    assert not capsys.readouterr().err
 
 
 def test_all_is_every_frame(tmp_path: Path) -> None:
