@@ -61,7 +61,7 @@ def serial(
     queue_size : int
         Frames that may wait to be taken.
     report : Report
-        Takes the link's counters and what happened to it.
+        Takes the link's counters and what happened to it; ends the frames once none are wanted.
 
     Yields
     ------
@@ -137,9 +137,12 @@ def _opened(
 
 
 def _next(reader: Reader, teller: _Teller, give_up_s: float | None, end: float) -> Arrived | None:
-    """Return the next frame that came before ``end``, if it was taken later too; or None."""
+    """Return the next frame that came before ``end``, if it was taken later too; or None.
+
+    None too once no frame is wanted any more: the port is then free for others.
+    """
     start = time.monotonic()
-    while True:
+    while teller.report.wanted:
         teller.tell()
         left = end - time.monotonic()
         arrived = reader.inbox.get(max(0.0, min(REPORT_EVERY_S, left)))
@@ -150,6 +153,7 @@ def _next(reader: Reader, teller: _Teller, give_up_s: float | None, end: float) 
         if give_up_s is not None and time.monotonic() - start > give_up_s:
             teller.tell(force=True)
             raise DataError(reader.url, f"no frame for {give_up_s:g} s ({reader.state})")
+    return None
 
 
 def _frame(arrived: Arrived, index: int, kit: Preset, port: str) -> Frame:

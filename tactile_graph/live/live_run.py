@@ -99,6 +99,7 @@ class LiveRun(Generic[ResultT]):
         clock: Clock = time.perf_counter_ns,
     ) -> None:
         self.report = report or Report()
+        self.report.wanted = True
         self._asked_us = _checked(deadline_us)
         self._only, self._seed, self._clock = only, seed, clock
         self._pipeline = pipeline
@@ -207,6 +208,7 @@ class LiveRun(Generic[ResultT]):
     def stop(self) -> None:
         """End the run after the frame that is under way."""
         self._stopped = True
+        self.report.wanted = False
         self._waiting.end()
 
     # -- the loop ------------------------------------------------------------------------------

@@ -46,6 +46,9 @@ class Report:
     n_places : int or None
         How many frames the recordings hold, those that were left out too (`Frame.place`); None
         until they are read to their end.
+    wanted : bool
+        Whether more frames are taken: false once nobody waits for the source any more. One that
+        waits for a device looks here now and then, and ends.
     """
 
     def __init__(
@@ -56,6 +59,7 @@ class Report:
         self.n_expected: int | None = None
         self.n_places: int | None = None
         self.digests: dict[str, str] = {}
+        self.wanted = True
         self._listener = listener
         self._keep = keep
 

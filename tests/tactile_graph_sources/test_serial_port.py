@@ -254,6 +254,12 @@ def test_silence_is_stalled_too(pad: FakePad) -> None:
     assert "nothing came for 0.2 s; is it the right port" in report.troubles[0][1]
 
 
+def test_it_waits_no_longer_once_no_frame_is_wanted(pad: FakePad) -> None:
+    report = Report()
+    report.wanted = False
+    assert list(source_of(pad, "m1616", report)) == []
+
+
 def test_a_port_that_is_not_there_is_named() -> None:
     with pytest.raises(UsageError, match=r"port '/dev/no-such' cannot be opened: .*ports here: "):
         next(serial(port="/dev/no-such", preset="m1616", report=Report()))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from math import inf
 from threading import Condition
 
@@ -30,6 +31,10 @@ LATEST_NS = 3 * PICTURE_NS
 """A picture is taken when no frame waits, but at last after so long."""
 SUMMARY_NS = 250_000_000
 SILENT_S = 1.0
+LATE_S = 0.5
+"""Frames may come so long after word that they do not: they were on their way."""
+CLOSE_S = 6.0
+"""The longest that is waited for a source to close before the next is opened."""
 Live = LiveResult[Result]
 
 
@@ -60,11 +65,14 @@ class Bench:
         self._baseline = order.baseline
         self._taring: Taring | None = None
         self._wants = wire.Want(False, False)
+        self._recorded_all = False
+        self._other_source = False
         self._held = order.held
         self._ended = self._restart = self._idle = False
         self._changed = Condition()
         self._next_picture_ns = self._next_summary_ns = 0
-        self._report = Report(listener=lambda where, what: self._say(f"{where}: {what}", "warning"))
+        self._report = Report()
+        self._trouble, self._trouble_s = "", 0.0
         self._meanwhile: Meanwhile | None = None
         self._beside: Beside | None = None
         if order.beside:
@@ -75,6 +83,9 @@ class Bench:
         """Make ready to read the source from its beginning."""
         order = self._order
         first = 0 if self._newest is None else self._newest.index + 1
+        counts, self._report = self._report.counts, Report(listener=self._heard)
+        self._report.counts.update(counts)
+        self._trouble = ""
         self._player: Player = player(
             self._pipeline,
             order.seed,
@@ -95,6 +106,8 @@ class Bench:
         )
         self._run.beside = self._beside
         self._tally.begin()
+        if self._restart or self._ended:  # asked for meanwhile, of the one before
+            self._stop()
 
     # -- the loop ----------------------------------------------------------------------------------
 
@@ -106,6 +119,7 @@ class Bench:
             if self._ended:
                 break
             if not self._restart:
+                self._trouble, self._trouble_s = error, inf
                 self._summarise("ended")
                 self._outbox.note(wire.Ended(error, self._tally.n_frames))
             with self._changed:
@@ -113,7 +127,9 @@ class Bench:
                 while not (self._restart or self._ended):
                     self._changed.wait()
                 self._restart = self._idle = False
+            self._await_close()
             if not self._ended:
+                self._part()
                 self._begin()
         if self._beside is not None:
             self._beside.close()
@@ -130,8 +146,34 @@ class Bench:
         except Exception as error:  # a source or a step may raise anything
             return f"{type(error).__name__}: {text_of(error)}"
         finally:
-            self._player.end()
+            self._stop()
         return ""
+
+    def _stop(self) -> None:
+        """Take no more frames of this source, be it that it waits for one."""
+        self._report.wanted = False
+        self._player.end()
+        self._run.stop()
+
+    def _await_close(self) -> None:
+        """Wait until the source is closed: the next may be on the same port."""
+        latest = time.monotonic() + CLOSE_S
+        while not (self._player.closed.wait(0.05) or self._ended):
+            if time.monotonic() > latest:
+                self._say("the source before does not end; what it holds is not free", "warning")
+                return
+
+    def _part(self) -> None:
+        """End what may not go on with a source that begins: a recording, another pad's tare."""
+        if self._wants.frames:
+            self._wants, self._recorded_all = replace(self._wants, frames=False), True
+            self._outbox.last_frame()
+        if self._other_source:
+            self._other_source = False
+            self._taring = None if self._taring is None else Taring()
+            if self._baseline is not None:
+                self._take_off(None)
+                self._say("the source may be another one: the tare is gone; tare anew", "warning")
 
     def _time_counts(self, pipeline: Pipeline) -> None:
         """Wait for the compiler where times are learnt: those of plain code would be kept."""
@@ -194,6 +236,8 @@ class Bench:
                 dict(self._report.counts),
                 None if self._beside is None else self._beside.summary(),
                 self._run.processes,
+                "" if state == "running" or self._newest_s > self._trouble_s + LATE_S
+                else self._trouble,
             )
         )  # fmt: skip
 
@@ -237,18 +281,24 @@ class Bench:
         elif isinstance(message, wire.Fetch):
             self._fetch(message)
         elif isinstance(message, wire.Want):
-            if self._wants.frames and not message.frames:
-                self._outbox.last_frame()
-            self._wants = message
+            self._want(message)
         elif isinstance(message, wire.Compare):
             self._compare()
         else:
             self._end()
 
+    def _want(self, message: wire.Want) -> None:
+        if self._recorded_all:  # it may be that the server does not know yet
+            self._recorded_all = message.frames
+            message = replace(message, frames=False)
+        if self._wants.frames and not message.frames:
+            self._outbox.last_frame()
+        self._wants = message
+
     def _swap(self, message: wire.Swap) -> None:
         """Run another pipeline from the next frame on, if it takes the frames that come.
 
-        Where the source is another one, or has ended, it is read from its beginning.
+        Where the source is another one, or has ended, it is closed and read from its beginning.
         """
         restart = message.restart or self._idle
         anew: tuple[str, ...] = ()
@@ -270,8 +320,8 @@ class Bench:
         if restart:
             with self._changed:
                 self._restart = True
-                self._player.end()
-                self._run.stop()
+                self._other_source = self._other_source or message.restart
+                self._stop()
                 self._changed.notify_all()
         self._next_picture_ns = 0
         self._outbox.note(wire.Swapped(message.version, anew=anew))
@@ -311,9 +361,13 @@ class Bench:
     def _end(self) -> None:
         with self._changed:
             self._ended = True
-            self._player.end()
-            self._run.stop()
+            self._stop()
             self._changed.notify_all()
+
+    def _heard(self, where: str, what: str) -> None:
+        """Pass on what the source says, and keep it: it may be why no frame comes."""
+        self._trouble, self._trouble_s = f"{where}: {what}", time.monotonic()
+        self._say(self._trouble, "warning")
 
     def _say(self, text: str, level: Level = "note") -> None:
         self._outbox.note(wire.Said(text, level))

@@ -5,11 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from threading import Condition
+from threading import Condition, Event
+from typing import TYPE_CHECKING
 
 from tactile_graph import Frame, Pipeline
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps import Report
+
+if TYPE_CHECKING:
+    from tactile_graph_sources.devices.capture import CaptureDevice
 
 LONGEST_PAUSE_S = 0.5
 USUAL_RATE_HZ = 30.0
@@ -17,13 +21,19 @@ PACE = "speed"
 """The setting by which a source that keeps a pace of its own is known."""
 
 
+def device_of(pipeline: Pipeline) -> CaptureDevice | None:
+    """Return the device that a pipeline's frames come from, if they do: it waits for nobody."""
+    if pipeline.source is None:
+        return None
+    registry = installed()
+    devices: list[CaptureDevice] = [registry.load("devices", n) for n in registry.names("devices")]
+    steps = {registry.spelled("steps", device.step): device for device in devices}
+    return steps.get(pipeline.source.name)
+
+
 def is_device(pipeline: Pipeline) -> bool:
     """Return whether a pipeline's frames come from a device that waits for nobody."""
-    if pipeline.source is None:
-        return False
-    registry = installed()
-    steps = {registry.load("devices", n).step for n in registry.names("devices")}
-    return pipeline.source.name in {registry.spelled("steps", s) for s in steps}
+    return device_of(pipeline) is not None
 
 
 def keeps_pace(pipeline: Pipeline) -> bool:
@@ -73,6 +83,11 @@ class Player:
         Whether it ends with the source, instead of starting over.
     first : int
         Number of the first frame.
+
+    Attributes
+    ----------
+    closed : Event
+        Set once it has ended and the source is closed.
     """
 
     def __init__(
@@ -89,6 +104,7 @@ class Player:
         self._held = False
         self._more = 0
         self._ended = False
+        self.closed = Event()
 
     def hold(self, on: bool) -> None:
         """Give no more frames, or go on; of a device they are taken all the same."""
@@ -110,6 +126,12 @@ class Player:
 
     def __iter__(self) -> Iterator[Frame]:
         """Yield the frames."""
+        try:
+            yield from self._frames()
+        finally:
+            self.closed.set()
+
+    def _frames(self) -> Iterator[Frame]:
         round_ = 0
         while not self._ended:
             before = self.next_index

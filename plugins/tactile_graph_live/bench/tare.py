@@ -40,13 +40,15 @@ class Taring:
 
     def __init__(self) -> None:
         self._readings: list[NDArray[Any]] = []
-        self._since = time.monotonic()
+        self._since = 0.0
 
     def add(self, frame: Frame) -> NDArray[np.float64] | None:
         """Take one more frame; return the baseline once there are enough."""
         readings = frame.image.filled(np.nan)
         if self._readings and self._readings[0].shape != readings.shape:
             self._readings.clear()
+        if not self._readings:  # it may have been asked for long before a frame comes
+            self._since = time.monotonic()
         self._readings.append(readings)
         n = len(self._readings)
         late = time.monotonic() - self._since > LONGEST_S and n >= FEWEST

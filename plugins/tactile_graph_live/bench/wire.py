@@ -104,7 +104,8 @@ class Rows:
 class Taken:
     """Frames as the source gave them, to be recorded; ``n_lost`` before them could not be kept.
 
-    After the ``last`` no more are taken until they are wanted again.
+    After the ``last`` no more are taken until they are wanted again; it comes unasked where the
+    source begins anew.
     """
 
     frames: tuple[Frame, ...]
@@ -117,7 +118,7 @@ class Summary:
     """All frames since the last summary in numbers; counts are since the start.
 
     ``latencies_us`` has one for each frame, float32. ``processes`` says how those of nodes fare
-    that run in one of their own.
+    that run in one of their own, ``trouble`` why no frame comes, as long as that lasts.
     """
 
     latencies_us: NDArray[np.float32]
@@ -132,6 +133,7 @@ class Summary:
     counters: Mapping[str, int]
     beside: dict[str, Any] | None = None
     processes: Mapping[str, ProcessState] = field(default_factory=dict)
+    trouble: str = ""
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ import { byId, mark, own, show, write } from "./dom.js";
 const FIRST_WAIT_S = 0.25;
 const LONGEST_WAIT_S = 5;
 const SILENCE_S = 6;
-const RUNS = { starting: "getting ready", waiting: "waiting for frames", ended: "the recording ended", paused: "paused" };
+const RUNS = { starting: "getting ready", waiting: "waiting for frames", ended: "the source ended", paused: "paused" };
 
 export class Connection {
   /** `take` is called with every message; `changed` with whether there is a connection. */

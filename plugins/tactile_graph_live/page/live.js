@@ -96,6 +96,8 @@ const TAKE = {
   },
   pulse(message) {
     connection.runs(message.paused ? "paused" : message.state);
+    show(byId("silent"), Boolean(message.trouble));
+    write(byId("silent-text"), message.trouble ?? "");
     status.take(message);
     nodes.takeProcesses(message.processes ?? {});
     card.takeProcesses(message.processes ?? {});
@@ -164,7 +166,10 @@ function count() {
 function connected(up) {
   document.body.classList.toggle("stale", !up);
   asked = "";
-  if (!up) status.interrupt(performance.now());
+  if (!up) {
+    show(byId("silent"), false); // nobody knows
+    status.interrupt(performance.now());
+  }
   if (up) look([...nodes.inSight]);
 }
 

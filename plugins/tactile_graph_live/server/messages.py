@@ -250,6 +250,8 @@ class Pulse:
         What can be scrubbed back over.
     state : str
         starting (frames come, none is answered yet), running, waiting (nothing comes), ended.
+    trouble : str
+        Why nothing comes (stalled, unplugged, ended by an error), as long as that lasts.
     """
 
     rate_hz: float
@@ -267,6 +269,7 @@ class Pulse:
     kept_s: float
     kept_frames: int
     state: str
+    trouble: str = ""
     counters: Mapping[str, int] = field(default_factory=dict)
     processes: Mapping[str, Plain] = field(default_factory=dict)
     """Of each node that runs apart (``map/node`` within a mapped pipeline) how its process fares:

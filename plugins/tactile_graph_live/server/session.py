@@ -20,7 +20,7 @@ from tactile_graph.errors import TactileGraphError, UsageError, text_of
 from tactile_graph.foreign_text import visible
 from tactile_graph.plugins.registry import selected
 from tactile_graph_live.bench import wire
-from tactile_graph_live.bench.playing import is_device
+from tactile_graph_live.bench.playing import device_of, is_device
 from tactile_graph_live.server import messages
 from tactile_graph_live.server.asking import checked
 from tactile_graph_live.server.bench_link import BenchLink
@@ -212,6 +212,9 @@ class Session:
         elif isinstance(message, wire.Taken):
             if self._taking is not None:
                 self._taking.take(message)
+                if message.last and not self._taking.ending:
+                    self._tell("the source begins anew: the recording ends here", "warning")
+                    self._later(self._record(False, ""))
         elif isinstance(message, wire.Kept):
             self._gaze.found(message)
         elif isinstance(message, wire.Tared):
@@ -367,8 +370,7 @@ class Session:
 
     async def _start_recording(self, label: str) -> None:
         pipeline = self._editor.now.draft.pipeline
-        source = pipeline.source.name if pipeline.source else ""
-        about = {"port": f"source {source}", "pipeline": pipeline.name}
+        about = {**_origin(pipeline), "pipeline": pipeline.name}
         failed = lambda what: self._in_loop(self._broken, what)  # noqa: E731
         recorder = await asyncio.to_thread(
             Recorder, self._setup.folder, pipeline.name, label, about, failed
@@ -423,6 +425,15 @@ class _Recording:
         self.recorder.take(taken.frames, taken.n_lost)
         if taken.last:
             self.last.set()
+
+
+def _origin(pipeline: Pipeline) -> dict[str, str]:
+    """Return where the frames come from, as ``record`` keeps it; nothing names the pad here."""
+    source, device = pipeline.source, device_of(pipeline)
+    if source is None or device is None:
+        return {"preset": "", "pad": "", "port": f"source {source.name if source else ''}"}
+    told = {"preset": source.settings.get("preset"), "port": source.settings.get(device.address)}
+    return {"pad": "", **{key: "" if value is None else str(value) for key, value in told.items()}}
 
 
 def _told(recorder: Recorder, n_frames: int) -> str:

@@ -81,6 +81,7 @@ class Vitals:
             kept_s=round(its.kept_s, 2),
             kept_frames=its.kept_frames,
             state=its.state,
+            trouble=visible(its.trouble),
             counters=its.counters,
             processes=_told(its.processes),
             beside=None if its.beside is None else without_nan(its.beside),

@@ -15,6 +15,7 @@ from tactile_graph import Frame, Pipeline, loads
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.live import LiveRun, paced
 from tactile_graph.live.waiting import Arrival, Waiting
+from tactile_graph.steps import Report
 
 PLUS = """
 pipeline: plus
@@ -152,6 +153,15 @@ def test_a_source_is_closed_when_the_run_ends() -> None:
     next(iter(run))
     run.stop()
     assert closed.wait(5)
+
+
+def test_a_source_that_waits_is_told_that_no_frame_is_wanted() -> None:
+    report = Report()
+    report.wanted = False  # of a run before
+    run = LiveRun(pipeline(), frames(5), report=report)
+    assert report.wanted
+    run.stop()
+    assert not report.wanted
 
 
 def test_it_ends_when_it_is_stopped() -> None:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
+import pytest
 
 from tactile_graph import Frame, Image
 from tactile_graph_live.bench import tare
@@ -36,10 +39,19 @@ def test_missing_cells_are_none_of_the_baseline() -> None:
 
 def test_a_slow_pad_is_tared_by_what_came_in_a_second() -> None:
     taring = Taring()
+    assert taring.add(frame(1.0)) is None
     taring._since -= 2 * tare.LONGEST_S
     assert taring.add(frame(1.0)) is None
-    assert taring.add(frame(1.0)) is None
     assert taring.add(frame(4.0)) is not None
+
+
+def test_the_second_of_a_slow_pad_begins_with_its_first_frame(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    taring = Taring()
+    now = time.monotonic() + 2 * tare.LONGEST_S
+    monkeypatch.setattr(time, "monotonic", lambda: now)
+    assert all(taring.add(frame(1.0)) is None for _ in range(tare.FEWEST + 1))
 
 
 def test_a_frame_less_the_baseline_keeps_all_but_its_values() -> None:

@@ -12,14 +12,14 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 import pytest
 
 from helpers_cli import call
 from helpers_live import COUNTS, PIPELINE, Command, Page, Sending, running, words_of
-from helpers_serial import KITS, FakePad
+from helpers_serial import KITS, FakePad, Kit
 
 for part in ("starlette", "uvicorn", "websockets"):
     pytest.importorskip(part, reason="the live extra is not installed")
@@ -559,8 +559,10 @@ def test_a_pad_is_unplugged_and_plugged_in_again_and_the_page_is_told(tmp_path: 
         with sending.pad_lock:
             pad.unplug()
             page.told("unplugged")
-            page.until("pulse", state="waiting")
+            while "unplugged" not in page.until("pulse", state="waiting")["trouble"]:
+                pass
             pad.plug_in()
+        page.until("pulse", trouble="")
         assert page.until("frame")["index"] > before["index"]
         while page.until("pulse")["lost"] == 0:
             pass
@@ -570,6 +572,63 @@ def test_a_pad_is_unplugged_and_plugged_in_again_and_the_page_is_told(tmp_path: 
         while page.until("pulse")["frames"] < n + 20:  # it goes on though nobody looks
             pass
         assert page.until("pulse")["counters"]["good frames"] > 20
+
+
+PRESET = """\
+preset: mine
+transport: {{baud: 115200}}
+framer: {{kind: text, separator: ','}}
+geometry: {{rows: {}, columns: 8, flip: {}}}
+"""
+
+
+@contextmanager
+def pad_of_lines(folder: Path, rows: int = 8) -> Iterator[tuple[Command, Page]]:
+    """Run the command and a page on a pad of 8 x 8 cells, by a preset of so many rows."""
+    kit = Kit("mine", (8, 8), 900, lambda pad, _: b",".join(b"%d" % v for v in pad.flat) + b"\n")
+    (folder / "mine.yaml").write_text(COUNTS)
+    (folder / "kit.yaml").write_text(PRESET.format(rows, "none"))
+    pad = FakePad(folder / "tty")
+    options = ("mine.yaml", "--port", str(pad.link), "--preset", "kit.yaml")
+    with Sending(pad, kit), running(folder, *options) as command, Page(command) as page:
+        yield command, page
+
+
+def test_a_preset_saved_opens_the_port_again_without_the_tare_and_the_recording(
+    tmp_path: Path,
+) -> None:
+    zarr = pytest.importorskip("zarr", reason="the zarr extra is not installed")
+    with pad_of_lines(tmp_path) as (_, page):
+        page.ask("tare")
+        page.told("tared by the median")
+        page.ask("record", on=True, label="")
+        while (before := page.until("pulse"))["recording"]["frames"] < 10:
+            pass
+        assert before["tared"]
+        (tmp_path / "kit.yaml").write_text(PRESET.format(8, "rows"))
+        page.told("tare anew")
+        page.told("the recording ends here")
+        page.told("recorded")
+        n = page.until("pulse", tared=False)["frames"]
+        while (pulse := page.until("pulse"))["frames"] < n + 20:
+            assert pulse["state"] != "ended"
+        assert not pulse["recording"]["on"]
+    (store,) = tmp_path.glob("*.zarr")
+    kept = zarr.open_group(store, mode="r").attrs
+    assert (kept["port"], kept["preset"]) == (str(tmp_path / "tty"), "kit.yaml")
+
+
+def test_a_page_that_comes_late_is_told_why_nothing_comes_until_the_preset_is_right(
+    tmp_path: Path,
+) -> None:
+    with pad_of_lines(tmp_path, rows=9) as (command, page):
+        page.told("stalled")
+        with Page(command) as late:
+            while "the size 9 x 8" not in late.until("pulse")["trouble"]:
+                pass
+            (tmp_path / "kit.yaml").write_text(PRESET.format(8, "none"))
+            late.until("frame")  # although the port was held by one that waited
+            late.until("pulse", state="running", trouble="")
 
 
 # -- on time, and beside -------------------------------------------------------------------------

@@ -239,6 +239,17 @@ def test_the_status_line(page: Any, double: Double) -> None:
     assert "800 µs median · 1.90 ms 99 %" in told
 
 
+def test_why_nothing_comes_stands_there_as_long_as_it_lasts(page: Any, double: Double) -> None:
+    double.say(pulse(state="ended", trouble="./tty: stalled: nothing came for 2 s"))
+    page.locator("#silent").wait_for()
+    assert page.locator("#silent").inner_text() == (
+        "No frames come. ./tty: stalled: nothing came for 2 s"
+    )
+    assert page.locator("#link").inner_text().strip() == "the source ended"
+    double.say(pulse(trouble=""))
+    page.locator("#silent").wait_for(state="hidden")
+
+
 def test_what_runs_beside_is_told(page: Any, double: Double) -> None:
     beside = {"variant": "circle-3", "frames": 200, "passed": 40, "same_outcomes": 199,
               "differences": {"radius_cm": {"mean": 0.1, "most": 0.75}}, "median_us": 29.0,
