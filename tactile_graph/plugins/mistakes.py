@@ -65,7 +65,8 @@ def check_hooks(module: ModuleType, known: Iterable[str], project: str, sure: bo
         if not name.startswith(f"{project}_") or not callable(value):
             continue
         marked = hasattr(value, f"{project}_impl")
-        if marked and name not in hooks and sure:
+        optional = mark and mark["optionalhook"]  # pluggy's word for a hook that may not be there
+        if marked and name not in hooks and sure and not optional:
             hint = did_you_mean(name, hooks) or f"; hooks: {one_of(hooks)}"
             raise PluginError(f"unknown hook {name!r}{hint}")
         if name in hooks and not marked:

@@ -150,9 +150,12 @@ class Registry:
 
     def _ask(self, module: ModuleType, kind: str) -> dict[str, Any]:
         hook = getattr(self._manager.hook, f"{GROUP}_{kind}")
-        functions = [i.function for i in hook.get_hookimpls() if i.plugin is module]
+        impls = [i for i in hook.get_hookimpls() if i.plugin is module]
+        # A wrapper goes around what others answer: nothing of its own where there is an answer.
+        plain = [i for i in impls if not (i.wrapper or i.hookwrapper)] or impls
         found: dict[str, Any] = {}
-        for function in dict.fromkeys(functions):  # a module may answer a hook more than once
+        functions = dict.fromkeys(i.function for i in plain)
+        for function in functions:  # a module may answer a hook more than once
             answer = self._checked(kind, function())
             for name in answer:
                 if name in found:

@@ -216,6 +216,20 @@ def test_a_plugin_that_answers_a_hook_twice_offers_both() -> None:
     assert offered(more("b", "stpes")).plugins[0].error == told
 
 
+def test_what_goes_around_a_hook_or_may_be_unknown_takes_nothing_away() -> None:
+    loader = plugin(steps={"a": step})
+
+    @hookimpl(wrapper=True, specname="tactile_graph_steps")
+    def around() -> Any:
+        return (yield)
+
+    later = hookimpl(specname="tactile_graph_later", optionalhook=True)(_returning({}))
+    vars(loader()).update(around=around, later=later)
+    found = offered(("wraps", loader))
+    assert found.plugins[0].error == ""
+    assert found.names("steps") == ["a"]
+
+
 def test_a_hook_without_its_mark_is_reported() -> None:
     module = types.ModuleType("bare")
     module.tactile_graph_steps = lambda: {"a": "b:c"}  # type: ignore[attr-defined]
