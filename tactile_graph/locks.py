@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import IO
 
 Name = str | os.PathLike[str]
+MOST_TRIES = 20
+"""To lock a file that has the lock's name still."""
 
 
 class Lock:
@@ -39,20 +41,20 @@ class Lock:
         """
         if self._file is None:
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            while not self._taken():
-                pass
+            any(self._taken(trusting=k == MOST_TRIES) for k in range(MOST_TRIES + 1))
         return self.held
 
-    def _taken(self) -> bool:
+    def _taken(self, trusting: bool) -> bool:
         """Take the lock if nobody holds it; return whether the file locked was the lock's still.
 
-        Where another removed it in between, a third could lock a new one of its name.
+        Where another removed it in between, a third could lock a new one of its name. Who is
+        ``trusting`` asks no more: there are file systems that number an open file otherwise.
         """
         file = self.path.open("ab")
         try:
             if not locked(file):
                 return True
-            if not self._names(file):
+            if not (trusting or self._names(file)):
                 return False
             self._file = file
             return True

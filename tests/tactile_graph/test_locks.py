@@ -77,3 +77,13 @@ def test_a_lock_that_is_removed_while_another_takes_it_has_one_holder(
     assert not third.take()
     second.remove()
     assert not name.exists()
+
+
+def test_a_lock_is_taken_where_an_open_file_is_numbered_otherwise(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lock, other = Lock(tmp_path / "a.lock"), Lock(tmp_path / "a.lock")
+    monkeypatch.setattr("os.path.samestat", lambda a, b: False)
+    assert lock.take()
+    assert not other.take()
+    lock.release()
