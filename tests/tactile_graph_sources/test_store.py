@@ -259,6 +259,21 @@ def test_a_second_writer_is_told_who_holds_the_store(tmp_path: Path) -> None:
     assert len(list(read_store(path))) == 2
 
 
+def test_a_writer_without_a_frame_that_is_closed_twice_leaves_anothers_store_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.zarr"
+    empty = StoreWriter(path)
+    monkeypatch.setattr(empty, "flush", lambda: None)  # as where the disc is full
+    empty.write(frames(1)[0])
+    empty.close()
+    assert not path.exists()
+    with StoreWriter(path) as store:
+        store.write(frames(1)[0])
+        empty.close()
+    assert len(list(read_store(path))) == 1
+
+
 def test_doubtful_frames_stay_marked(tmp_path: Path) -> None:
     with StoreWriter(tmp_path / "a.zarr") as store:
         for i in range(2):

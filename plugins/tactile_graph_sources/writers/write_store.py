@@ -144,6 +144,7 @@ class StoreWriter:
         finally:
             if self._is_new and not self.n_written:
                 shutil.rmtree(self.path, ignore_errors=True)
+            self._is_new = False  # closed again, another's may be there
             self._sole.release()
 
     @property
