@@ -236,10 +236,15 @@ class Bench:
                 dict(self._report.counts),
                 None if self._beside is None else self._beside.summary(),
                 self._run.processes,
-                "" if state == "running" or self._newest_s > self._trouble_s + LATE_S
-                else self._trouble,
+                self._why_silent(state),
             )
         )  # fmt: skip
+
+    def _why_silent(self, state: wire.State) -> str:
+        """Return what the source said of why no frame comes; "" where one does, or waits here."""
+        comes = state == "running" or self._newest_s > self._trouble_s + LATE_S
+        waits = state != "ended" and self._player.in_hand
+        return "" if comes or waits else self._trouble
 
     # -- the reader --------------------------------------------------------------------------------
 

@@ -88,6 +88,8 @@ class Player:
     ----------
     closed : Event
         Set once it has ended and the source is closed.
+    in_hand : bool
+        Whether the source gave a frame that waits here, held or not due yet.
     """
 
     def __init__(
@@ -105,6 +107,7 @@ class Player:
         self._more = 0
         self._ended = False
         self.closed = Event()
+        self.in_hand = False
 
     def hold(self, on: bool) -> None:
         """Give no more frames, or go on; of a device they are taken all the same."""
@@ -163,7 +166,9 @@ class Player:
                     return True
                 if not self._held and left <= 0:
                     return True
+                self.in_hand = True
                 self._changed.wait(None if self._held else left)
+                self.in_hand = False
         return False
 
 
