@@ -12,7 +12,7 @@ from tactile_graph import Pipeline, load
 from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, shown, text_of
 from tactile_graph.foreign_text import visible
 from tactile_graph_live.server.messages import Fault
-from tactile_graph_live.server.watching import Stamps
+from tactile_graph_live.server.watching import Contents
 from tactile_graph_live.server.yaml_settings import Settings, text_with
 
 MOST_FAULTS = 50
@@ -33,14 +33,14 @@ class Draft:
     set_here : mapping
         What was set on the page.
     source_files : mapping
-        The files that the source names, but for recordings, and what told when they were saved.
+        The files that the source names, but for recordings, and what stands in them.
     """
 
     pipeline: Pipeline
     base: str
     given: Settings = field(default_factory=dict)
     set_here: Settings = field(default_factory=dict)
-    source_files: Stamps = field(default_factory=dict)
+    source_files: Contents = field(default_factory=dict)
 
     @classmethod
     def of(cls, pipeline: Pipeline) -> Draft:

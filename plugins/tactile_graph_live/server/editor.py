@@ -16,7 +16,7 @@ from tactile_graph_live.server.graph_message import graph_message
 from tactile_graph_live.server.lookback import Lookback
 from tactile_graph_live.server.messages import Fault, Graph, Trouble
 from tactile_graph_live.server.unawaited import unawaited
-from tactile_graph_live.server.watching import SETTLE_S, FileSense, Stamps, Watched
+from tactile_graph_live.server.watching import SETTLE_S, Contents, FileSense, Watched
 
 SLOW_S = 2.0
 """After so long it is told that a pipeline is still being made ready."""
@@ -109,7 +109,7 @@ class Editor:
                 return
             await self._apply(draft, began, of_file=True)
 
-    def _watch_all_of(self, draft: Draft) -> Stamps:
+    def _watch_all_of(self, draft: Draft) -> Contents:
         """Watch all that is read with a file that is right; return what its source reads."""
 
         def read_source() -> None:
@@ -118,7 +118,7 @@ class Editor:
             except TactileGraphError as error:  # the bench tells what keeps it from its frames
                 self._borne = _texts(error, draft)
 
-        return self._watched.take(draft.read_again, read_source)[1]
+        return self._watched.contents(self._watched.take(draft.read_again, read_source)[1])
 
     def _read(self) -> Draft:
         found: list[Draft] = []
@@ -133,7 +133,7 @@ class Editor:
         _, source_files = self._watched.take(
             lambda: found.append(self.now.draft.read_again()), read_source
         )
-        return replace(found[0], source_files=source_files)
+        return replace(found[0], source_files=self._watched.contents(source_files))
 
     # -- the page ----------------------------------------------------------------------------------
 

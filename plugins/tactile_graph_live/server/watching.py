@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import asyncio
+import os
 from collections import ChainMap
 from collections.abc import Callable, Iterable
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass
+from hashlib import sha256
 
 from tactile_graph import Pipeline
 
 Stamp = tuple[int, int, int] | None
 Stamps = dict[str, Stamp]
+Contents = dict[str, Stamp | bytes]
 LOOK_S = 0.05
 SETTLE_S = 0.12
 """An editor that writes in several steps is done by then; only mistakes wait so long."""
 RECORDED = ".zarr/"
+MOST_BYTES = 1 << 22
+"""Of a file whose content is compared."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +69,22 @@ class Watched:
             found = {k: v for k, v in ChainMap(*each).items() if RECORDED not in k}
             self._stamps = found | {name: before[name] for name in kept}
         return each
+
+    def contents(self, stamps: Stamps) -> Contents:
+        """Return a digest of what stands in each file: one saved as it was is no other.
+
+        Of what is gone, is long, or was saved again since it was read, the stamp.
+        """
+        found: Contents = {}
+        for name, was in stamps.items():
+            found[name] = was
+            if not os.path.isfile(name):
+                continue  # a pipe would be waited for
+            with suppress(OSError), open(name, "rb") as file:
+                data = file.read(MOST_BYTES + 1)
+                if len(data) <= MOST_BYTES and self._sense.stamp(name) == was:
+                    found[name] = sha256(data).digest()
+        return found
 
     def changed(self) -> bool:
         """Return whether a file is no longer what it was when it was read."""

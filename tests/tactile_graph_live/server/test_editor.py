@@ -95,6 +95,18 @@ def test_what_was_said_of_the_source_at_the_start_keeps_no_change_from_running(
     assert "odd-4" in desk.troubles[-1].errors[0].text
 
 
+def test_a_file_of_the_source_that_is_saved_as_it_was_starts_nothing_anew(tmp_path: Path) -> None:
+    scene = tmp_path / "ball.yaml"
+    text = "objects: [{shape: disc, weight_g: 150, radius_cm: 0.8}]\n"
+    scene.write_text(text)
+    desk = Desk(tmp_path / "f.yaml", ODD.replace("odd-3", f"'{scene}'"))
+    for saved, restart in ((text, False), (text.replace("150", "200"), True)):
+        scene.unlink()
+        scene.write_text(saved)
+        desk.play(desk.editor.reload)
+        assert (desk.troubles, desk.swaps[-1].restart) == ([], restart)
+
+
 def test_a_file_that_is_right_runs_and_counts_up(desk: Desk) -> None:
     desk.save(FLOW.replace("0.01", "0.02"))
     desk.play(desk.editor.reload)
