@@ -15,6 +15,9 @@ from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
 from tactile_graph_sources.recording import recording
 
+LOOK_S = 0.2
+"""How often it is looked, in a pause, whether a frame is wanted still."""
+
 
 def replay(
     *,
@@ -56,7 +59,9 @@ def replay(
     while True:
         for position, frame in enumerate(recording(path=path, report=report)):
             if speed is not None:
-                clock.wait_for(_moment(path, frame, position, rate_hz), starts=position == 0)
+                moment = _moment(path, frame, position, rate_hz)
+                if not clock.wait_for(moment, starts=position == 0, report=report):
+                    return
             again = position == 0 and index > 0
             yield replace(frame, index=index, gap=frame.gap or again)
             index += 1
@@ -81,7 +86,8 @@ class _Clock:
         self._due = 0.0
         self._last: float | None = None
 
-    def wait_for(self, moment: float, starts: bool) -> None:
+    def wait_for(self, moment: float, starts: bool, report: Report) -> bool:
+        """Return whether a frame is wanted still once the moment is there."""
         now = time.monotonic()
         if self._last is None or starts:
             self._due = now
@@ -91,5 +97,8 @@ class _Clock:
                 step = min(step, self.longest_pause_s)
             self._due = max(self._due + step / self.speed, now - 1.0)
         self._last = moment
-        if self._due > now:
-            time.sleep(self._due - now)
+        while (left := self._due - time.monotonic()) > 0:
+            if not report.wanted:
+                return False
+            time.sleep(min(left, LOOK_S))
+        return True

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from itertools import islice
 from pathlib import Path
+from threading import Timer
 
 import numpy as np
 import pytest
@@ -55,6 +56,16 @@ def test_frames_come_at_their_time_divided_by_the_speed(path: Path) -> None:
 def test_long_pauses_may_be_cut(path: Path) -> None:
     _, seconds = took(path=path, longest_pause_s=0.1)
     assert 0.4 <= seconds < 8.0
+
+
+def test_a_pause_ends_once_no_frame_is_wanted(path: Path) -> None:
+    report = Report()
+    timer = Timer(0.3, setattr, (report, "wanted", False))
+    timer.start()
+    start = time.monotonic()
+    assert len(list(replay(path=path, report=report))) == 3
+    assert time.monotonic() - start < 8.0
+    timer.join()
 
 
 def test_without_a_speed_nothing_is_waited_for(path: Path) -> None:
