@@ -143,3 +143,8 @@ def test_a_scene_that_needs_one_start_draws_as_one_object_after_the_other():
 def test_two_outlines_are_apart_where_a_straight_gap_runs_between(one, other, by_cm, apart):
     assert are_apart(one, other, by_cm) is apart
     assert are_apart(other, one, by_cm) is apart
+
+
+def test_what_has_its_centre_on_the_pad_is_not_looked_at_further(monkeypatch):
+    monkeypatch.delattr(placement, "are_apart")  # it takes most of the time that truth takes
+    assert not placement.is_off(Circle(5.0, 5.0, 1.0), (0.0, 20.8, 20.8, 0.0))
