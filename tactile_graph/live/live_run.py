@@ -271,6 +271,7 @@ class LiveRun(Generic[ResultT]):
             self._waiting.end()
             if isinstance(self._source, Generator):
                 self._source.close()  # a port is free again, a file closed
+            self.report.wanted = True  # of who reads a source with this report next
 
     def _one_more(self) -> bool:
         with self._asking:

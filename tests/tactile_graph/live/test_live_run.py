@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import itertools
+import time
 from collections.abc import Callable, Iterator
 from threading import Event
 from typing import Any
@@ -162,6 +163,27 @@ def test_a_source_that_waits_is_told_that_no_frame_is_wanted() -> None:
     assert report.wanted
     run.stop()
     assert not report.wanted
+
+
+def test_a_report_serves_again_once_the_source_is_closed() -> None:
+    report, closed = Report(), Event()
+
+    def watched() -> Iterator[Frame]:
+        try:
+            while report.wanted:
+                yield from frames(1)
+        finally:
+            closed.set()
+
+    run = LiveRun(pipeline(), watched(), report=report)
+    next(iter(run))
+    run.stop()
+    assert closed.wait(5)
+    for _ in range(500):
+        if report.wanted:
+            break
+        time.sleep(0.01)
+    assert report.wanted
 
 
 def test_it_ends_when_it_is_stopped() -> None:
