@@ -44,7 +44,7 @@ def _constant_plain(values: NDArray[np.float64], rows: Flags, columns: Flags) ->
     """
     for lines, constant in ((values, rows), (values.T, columns)):
         constant[:] = False
-        if lines.shape[1] < LEAST_CELLS:
+        if lines.shape[1] < LEAST_CELLS or not len(lines):
             continue
         middle = np.sort(lines, axis=1)[:, lines.shape[1] // 2]
         found = (lines == middle[:, None]).mean(axis=1) >= EQUAL_SHARE

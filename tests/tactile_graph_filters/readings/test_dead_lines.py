@@ -47,6 +47,10 @@ def test_lines_of_few_cells_are_never_called_dead() -> None:
     assert found(values) == ([], [])
 
 
+def test_an_image_without_columns_has_no_dead_line() -> None:
+    assert found(np.zeros((9, 0))) == ([], [])
+
+
 @pytest.mark.slow  # much is compiled
 @settings(max_examples=100, deadline=None)
 @given(
