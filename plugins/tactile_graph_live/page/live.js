@@ -111,11 +111,20 @@ const TAKE = {
 
 const answer = (frame) => connection.send("pong", { index: frame.index });
 
+/** Say in words what pictures show. */
+function inWords() {
+  if (document.hidden || !shown) return;
+  describe(pad);
+  results.describe();
+  status.describe();
+}
+
 function paint() {
   const frame = latest;
   latest = null;
   if (frame === null) return;
   const begun = performance.now();
+  const first = shown === null;
   shown = frame;
   pictures += 1;
   pad.paint(frame);
@@ -126,6 +135,7 @@ function paint() {
   transport.paint(frame);
   tellWhen(frame, begun);
   drawn.push(performance.now() - begun);
+  if (first) inWords(); // whoever cannot see reads the page as soon as it is there
   mark(document.documentElement, "data-drawn", frame.version);
   clearTimeout(settling);
   settling = setTimeout(settle, SETTLED_MS);
@@ -138,6 +148,7 @@ function settle() {
   card.paint(shown);
   results.paint(shown);
   tellWhen(shown, performance.now());
+  inWords();
 }
 
 function tellWhen(frame, now) {
@@ -203,10 +214,5 @@ const wide = matchMedia("(min-width: 781px)");
 wide.addEventListener("change", arrange);
 arrange();
 setInterval(count, 1000);
-setInterval(() => {
-  if (document.hidden || !shown) return;
-  describe(pad);
-  results.describe();
-  status.describe();
-}, DESCRIBE_MS);
+setInterval(inWords, DESCRIBE_MS);
 show(byId("lost"), false);
