@@ -122,11 +122,8 @@ class Runner(Generic[ResultT]):
         self._last: tuple[bytes, ResultT] | None = None
         self._sure: ResultT | None = None
         self._n_lost = 0
-        self._shape: tuple[int, ...] = ()
-        self._quantity = ""
-        self._pitch_cm = (0.0, 0.0)
-        # Where there are rules about numbers, a frame of another pitch is checked, too.
-        self._rules = any(r.quantity is None for r in self.plan.rules)
+        # All that rules are about: a frame that is as the last one in these keeps them, too.
+        self._checked: tuple[tuple[int, ...], str, tuple[float, float]] = (), "", (0.0, 0.0)
         _make_room(self.plan.depth)
 
     @property
@@ -241,11 +238,7 @@ class Runner(Generic[ResultT]):
                 f"a runner takes frames, got {type(frame).__name__}; Frame.of(values) makes one"
             ) from None
         values = image.values
-        if (
-            values.shape != self._shape
-            or image.quantity != self._quantity
-            or (self._rules and image.pitch_cm != self._pitch_cm)
-        ):
+        if (values.shape, image.quantity, image.pitch_cm) != self._checked:
             self._check(image)
         if self._repeatable:
             content = values.tobytes()
@@ -282,8 +275,7 @@ class Runner(Generic[ResultT]):
 
     def _check(self, image: Image) -> None:
         check_frame(image, self.plan)
-        self._shape, self._quantity = image.values.shape, image.quantity
-        self._pitch_cm = image.pitch_cm
+        self._checked = image.values.shape, image.quantity, image.pitch_cm
 
     def _settle(self, state: list[Any], operations: list[Operation]) -> None:
         context = self._context
@@ -315,11 +307,7 @@ class Runner(Generic[ResultT]):
         """
         images = frames.images
         n = len(frames)
-        if (
-            images.shape[1:] != self._shape
-            or images.quantity != self._quantity
-            or (self._rules and images.pitch_cm != self._pitch_cm)
-        ):
+        if (images.shape[1:], images.quantity, images.pitch_cm) != self._checked:
             self._check(images[0])
         last = self._last
         of, before = np.arange(n), None

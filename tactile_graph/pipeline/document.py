@@ -17,6 +17,7 @@ from tactile_graph.pipeline import yaml_numbers
 from tactile_graph.pipeline.yaml_numbers import in_yaml as in_yaml
 from tactile_graph.pipeline.yaml_numbers import is_plain as is_plain
 from tactile_graph.pipeline.yaml_numbers import on_one_line as on_one_line
+from tactile_graph.pipeline.yaml_numbers import quote_for_all as quote_for_all
 
 Path = tuple[str | int, ...]
 MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of values

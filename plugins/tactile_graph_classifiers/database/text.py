@@ -11,6 +11,7 @@ import numpy as np
 import yaml
 
 from tactile_graph.errors import DataError, did_you_mean, shown
+from tactile_graph.pipeline.document import quote_for_all
 from tactile_graph_classifiers.database.instrument import Instrument
 from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.database.rows import Lesson, Setting
@@ -28,11 +29,7 @@ class _Dumper(_Base):  # type: ignore[misc]
     """PyYAML's fast dumper, whose texts every reader of YAML 1.1 and 1.2 takes for texts."""
 
 
-_Dumper.add_implicit_resolver(
-    "tag:yaml.org,2002:float",  # or any but a text's: such a text is put in quotes
-    re.compile(r"[yYnN]$|0o[0-7]+$|[-+]?(?:\.[0-9]+|[0-9]+\.?[0-9]*)(?:[eE][-+]?[0-9]+)?$"),
-    list("yYnN-+.0123456789"),
-)
+quote_for_all(_Dumper)
 _KEYS = {
     "format", "version", "about", "quantity", "pipeline", "instrument", "features", "objects",
 }  # fmt: skip

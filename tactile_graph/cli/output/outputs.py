@@ -149,6 +149,15 @@ class _Named:
             close_early(self._writer)
 
 
+class _OnStdout(_Named):
+    """A writer that took stdout for itself."""
+
+    def write(self, result: Result) -> None:
+        """Take in a frame."""
+        with self._named("write"):
+            self._writer.write(result)
+
+
 def forms() -> list[str]:
     """Return what ``--format`` takes: the endings of files, without their dots."""
     return [form_of(ending) for ending in _endings()]
@@ -201,12 +210,3 @@ def _ending(name: str, form: str | None) -> str:
     raise UsageError(
         f"-o {name}: its name must end in {', '.join(known)}, or give --format{near}{missing}"
     )
-
-
-class _OnStdout(_Named):
-    """A writer that took stdout for itself."""
-
-    def write(self, result: Result) -> None:
-        """Take in a frame."""
-        with self._named("write"):
-            self._writer.write(result)
