@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -84,7 +84,7 @@ def _are_even(at: Sequence[int], n_rows: int) -> bool:
 
 
 def stamp_of(line: str) -> Stamp:
-    """Return the number and the time that a line between matrices says."""
+    """Return the number and the time that a line between matrices says, its decimals by points."""
     label = FRAME_LINE.fullmatch(line)
     frame = int(label[1]) if label else None
     at = clock_s(line.strip(" \t#,;|"))
@@ -105,9 +105,3 @@ def stamp_of(line: str) -> Stamp:
     units = (timed[2] or timed[3] or "", timed[5], timed[1])
     unit_s = next((SECONDS[u.lower()] for u in units if u.lower() in SECONDS), None)
     return Stamp(frame, float(text), unit_s)
-
-
-def times_without_unit(lines: Iterable[str], breaks: frozenset[str]) -> list[float]:
-    """Return the times between matrices whose unit nobody says."""
-    stamps = [stamp_of(line) for line in lines if signature(line) in breaks]
-    return [s.time for s in stamps if s.time is not None and s.unit_s is None]

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph_sources.readers.tables.breaks import times_without_unit
 from tactile_graph_sources.readers.tables.evidence import (
     CLEAR,
     climbs_in_parts,
@@ -213,7 +212,7 @@ def _without_sums(base: Layout, table: Table, rows: int) -> Layout:
 
 def _time_unit(base: Layout, table: Table) -> dict[str, Any]:
     """Return what is assumed of times between matrices whose unit nobody says."""
-    times = times_without_unit(table.lines, table.breaks)
+    times = table.times_without_unit
     if not times:
         return {}
     factor, note = assumed_unit(np.array(times))

@@ -18,6 +18,7 @@ from tactile_graph_sources.readers.tables.breaks import (
     breaks_of,
     opens_matrix,
     signature,
+    stamp_of,
 )
 from tactile_graph_sources.readers.tables.evidence import Numbers, as_numbers, is_count
 from tactile_graph_sources.readers.words.dialect import (
@@ -107,8 +108,17 @@ class Table:
     @cached_property
     def _are_rows(self) -> tuple[bool, ...]:
         return tuple(
-            is_row(line) and not self._is_lone(line) and line != self.header_line
+            is_row(line)
+            and not self._is_lone(line)
+            and not self._is_frame_line(line)
+            and line != self.header_line
             for line in self.lines
+        )
+
+    def _is_frame_line(self, line: str) -> bool:
+        """Return whether ``Frame 3;t;12,5`` opens a matrix: it has not as many fields as rows."""
+        return (
+            FRAME_LINE.fullmatch(line) is not None and len(self.dialect.fields(line)) != self.width
         )
 
     def _is_lone(self, line: str) -> bool:
@@ -126,7 +136,16 @@ class Table:
         kept = [
             (x, one) for x, one in zip(self.lines, self._are_rows, strict=True) if not is_blank(x)
         ]
-        return breaks_of([x for x, _ in kept], [one for _, one in kept])
+        return breaks_of([self.dialect.pointed(x) for x, _ in kept], [one for _, one in kept])
+
+    def _is_break(self, line: str) -> bool:
+        return signature(self.dialect.pointed(line)) in self.breaks
+
+    @property
+    def times_without_unit(self) -> list[float]:
+        """The times between matrices whose unit nobody says."""
+        stamps = [stamp_of(self.dialect.pointed(x)) for x in self.lines if self._is_break(x)]
+        return [s.time for s in stamps if s.time is not None and s.unit_s is None]
 
     @cached_property
     def clocks(self) -> tuple[int, ...]:
@@ -184,7 +203,7 @@ class Table:
                     blanks >= run
                     or FRAME_LINE.fullmatch(line)
                     or line == self.header_line
-                    or (opens_matrix(line) if one else signature(line) in self.breaks)
+                    or (opens_matrix(line) if one else self._is_break(line))
                 ):
                     groups.append(size)
                     size = 0
@@ -241,7 +260,8 @@ def table_of(
     ]
     if not rows:
         return None
-    dialect = Dialect.of([line for _, line in rows[:200]])
+    written = [line for _, line in rows[:200]]
+    dialect = Dialect.of([x for x in written if not FRAME_LINE.fullmatch(x)] or written)
     fields = [(k, dialect.fields(line)) for k, line in rows[:2000]]
     width = _width([f for _, f in fields])
     full = [(k, f[:width]) for k, f in fields if len(f) >= width and not any(f[width:])]

@@ -74,7 +74,7 @@ def read(reading: Reading) -> Iterator[Frame]:
         blanks = 0
         matrix.number = matrix.number if row is None else row
         if between:
-            matrix.stamp = _joined(matrix.stamp, stamp_of(line))
+            matrix.stamp = _joined(matrix.stamp, stamp_of(layout.dialect.pointed(line)))
         elif not (is_comment(line) or (before and not _is_damaged(layout, line))):
             _take(layout, matrix, number, line)
     yield from _flush(reading, layout, matrix, times)
@@ -108,7 +108,7 @@ def _is_between(layout: Layout, line: str) -> bool:
     """Return whether a line stands between matrices and says something of the next one."""
     if FRAME_LINE.fullmatch(line) or (layout.header_line and line == layout.header_line):
         return True
-    return bool(layout.breaks) and signature(line) in layout.breaks
+    return bool(layout.breaks) and signature(layout.dialect.pointed(line)) in layout.breaks
 
 
 def _joined(one: Stamp, other: Stamp) -> Stamp:

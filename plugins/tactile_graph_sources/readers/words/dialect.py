@@ -46,6 +46,8 @@ _DURATION = re.compile(
 _UNIT_S = {"s": 1.0, "sec": 1.0, "secs": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6}
 _DAY_0 = datetime.date(2000, 1, 1).toordinal()  # near enough for microseconds to be kept
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+(,\d+)?")
+_COMMA_WITHIN = re.compile(r"(?<=\d),(?=\d+(?!\d|:|\.\d))")
+"""One of decimals, not the one before a time of day or a number with decimals of its own."""
 _GROUPED = {
     ".": re.compile(r"[-+]?[1-9]\d{0,2}(?:\.\d{3})+(?:,\d+)?"),
     ",": re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+(?:\.\d+)?"),
@@ -198,6 +200,14 @@ class Dialect(NamedTuple):
         if self.decimal_comma and self.separator != ",":
             line = line.replace(",", ".")
         return line.split(self.separator)
+
+    def pointed(self, line: str) -> str:
+        """Return a line that stands between rows with a point before the decimals of its numbers.
+
+        A comma is a decimal one where it parts no fields and no thousands.
+        """
+        commas = self.decimal_comma or self.separator != ","
+        return _COMMA_WITHIN.sub(".", line) if commas and self.thousands != "," else line
 
     def row(self, line: str, width: int) -> list[float]:
         """Return the ``width`` numbers of a line; NaN for missing cells.

@@ -465,6 +465,31 @@ def test_a_time_that_the_rows_of_a_matrix_share_is_no_cell(tmp_path: Path) -> No
     assert [f.time_s for f in frames_of(path)[0]] == pytest.approx([0.02 * k for k in range(6)])
 
 
+@pytest.mark.parametrize("separator", [",", ";", "\t", "   "])
+@pytest.mark.parametrize(
+    ("line", "first_s"),
+    [
+        ("Zeit [s]{0}{1}", 12.5),
+        ("t = {1}", 12.5),
+        ("Time{0}{1} s", 12.5),
+        ("Frame {2}{0}Zeit{0}{1}", 12.5),
+        ("Time:{0}10:00:{1}", 0.0),
+        ("16/11/2026, 10:00:{1}", 0.0),
+    ],
+)
+def test_times_between_matrices_have_the_decimals_of_the_rows(
+    line: str, first_s: float, separator: str, tmp_path: Path
+) -> None:
+    values = moving(6, 4, 6) / 10
+    lines = [line.format(separator, f"{12.5 + 0.25 * k:.2f}", k + 1) for k in range(6)]
+    rows = stacked_text(np.round(values, 1), separator).split("\n\n")
+    text = "\n".join(f"{x}\n{r}\n" for x, r in zip(lines, rows, strict=True))
+    text = text if separator == "," else text.replace(".", ",")
+    frames, report = frames_of(write(tmp_path, text.encode("utf-16")))
+    assert [f.time_s for f in frames] == pytest.approx([first_s + 0.25 * k for k in range(6)])
+    assert not report.troubles
+
+
 def moving(n: int, rows: int, columns: int) -> np.ndarray:
     """Return whole readings of a load that moves slowly over noise, shape (n, rows, columns)."""
     y, x = np.mgrid[:rows, :columns]
