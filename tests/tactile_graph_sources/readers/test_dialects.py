@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import warnings
 from importlib.util import find_spec
 from pathlib import Path
@@ -221,6 +222,53 @@ def test_frame_and_value_columns_of_a_long_table_are_told(tmp_path: Path) -> Non
     np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
 
 
+@pytest.mark.parametrize(
+    ("name", "quantity", "factor"),
+    [
+        ("R{0}C{1} (N/cm2)", "kilopascal", 10.0),
+        ("R{0}C{1} [N/cm²]", "kilopascal", 10.0),
+        ("R{0}C{1} N/cm2", "kilopascal", 10.0),
+        ("C{1}R{0} (cmH2O)", "kilopascal", 0.0980665),
+        ("x{1}y{0} (kPa)", "kilopascal", 1.0),
+        ("R{0}C{1} (kips/ft2)", "raw", 1.0),
+        ("p[r{0}][c{1}]", "raw", 1.0),
+    ],
+)
+def test_a_unit_behind_the_names_of_cells_hides_no_place(
+    name: str, quantity: str, factor: float, tmp_path: Path
+) -> None:
+    names = [name.format(r + 1, c + 1) for c in range(10) for r in range(6)]
+    turned = np.moveaxis(OBLONG, 1, 2)
+    text = flat(turned, (f"{k / 10:.1f}" for k in range(len(OBLONG))), ",".join(["t (s)", *names]))
+    path = write(tmp_path, text.encode("latin-1"))
+    for told in ({}, {"rows": 6, "columns": 10}):
+        frames, _ = frames_of(path, **told)
+        np.testing.assert_allclose([f.image.values for f in frames], OBLONG * factor)
+        assert {f.image.quantity for f in frames} == {quantity}
+    with pytest.raises(DataError, match="say 6 x 10 cells, the settings 10 x 6"):
+        frames_of(path, rows=10, columns=6)
+
+
+@pytest.mark.parametrize("kind", ["words", "long", "json", "npz", "mat", "h5"])
+def test_a_unit_that_nobody_knows_is_told_whatever_says_it(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / f"film.{kind}"
+    if kind == "words":
+        path.write_text("Units: kips/ft2\n" + flat(SQUARE), encoding="utf-8")
+    elif kind == "long":
+        path.write_text(long(OBLONG, "frame,row,col,value [kips/ft2]", "krcv"), encoding="utf-8")
+    elif kind == "json":
+        path.write_text(json.dumps({"unit": "kips/ft2", "frames": SQUARE.tolist()}), "utf-8")
+    elif kind == "npz":
+        np.savez(path, frames=SQUARE, unit="kips/ft2")
+    elif kind == "mat":
+        path.write_bytes(matlab(frames=np.moveaxis(SQUARE, 0, -1), unit="kips/ft2"))
+    else:
+        hdf5(path, "kips/ft2", pressure=SQUARE)
+    frames, report = frames_of(path)
+    assert frames[0].image.quantity == "raw"
+    assert report.counts["recordings with values in 'kips/ft2' taken as they are"] == 1
+
+
 # -- arrays ------------------------------------------------------------------------------------
 
 
@@ -298,12 +346,12 @@ def test_a_folder_of_pictures_is_read_in_the_order_of_their_numbers(tmp_path: Pa
 # -- HDF5 --------------------------------------------------------------------------------------
 
 
-def hdf5(path: Path, **datasets: np.ndarray) -> Path:
+def hdf5(path: Path, unit: str = "kPa", **datasets: np.ndarray) -> Path:
     h5py = pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
     with h5py.File(path, "w") as file:
         for name, values in datasets.items():
             file[name] = values
-        file.attrs["unit"] = "kPa"
+        file.attrs["unit"] = unit
         file.attrs["pitch"] = "5 mm"
     return path
 

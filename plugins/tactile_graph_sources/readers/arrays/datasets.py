@@ -94,6 +94,8 @@ def _timed(
     elif times is not None:
         factor = _factor(reading, held.times_name, times)
     said = held.said
+    for note in said.notes:
+        reading.assume(note)
     if times is None and said.frame_s is not None:
         times, factor = np.arange(len(frames)), said.frame_s
     times_s = None if times is None else times.astype(np.float64) * factor

@@ -16,7 +16,7 @@ from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.words.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.words.told import MOST_CELLS
-from tactile_graph_sources.readers.words.units import pressure_unit
+from tactile_graph_sources.readers.words.units import pressure_unit, taken_as_they_are
 
 SUMMARIES = ("MPP", "MVP")
 _UNIT = re.compile(r"pressure values in\s+(\S+)", re.IGNORECASE)
@@ -83,6 +83,8 @@ def _header(reading: Reading, lines: Iterator[tuple[int, str]]) -> tuple[str, fl
         unit = found[1] if found else unit
         if line.startswith("time["):
             quantity, factor = pressure_unit(unit)
+            for note in taken_as_they_are(unit):
+                reading.assume(note)
             return quantity, factor, len(line.split()) - 1
     raise DataError(str(reading.path), "no line of cell numbers (time[secs] 1 2 3 …) in it")
 

@@ -14,7 +14,7 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.words.dialect import Dialect
-from tactile_graph_sources.readers.words.units import length_cm, pressure_unit
+from tactile_graph_sources.readers.words.units import length_cm, pressure_unit, taken_as_they_are
 
 _FRAME = re.compile(r"Frame\s+(\d{1,9})\b[\s,;]*(\d[\d.]*)?", re.IGNORECASE)
 _RAW_SUM = re.compile(r"Raw Sum=?[\s,;]*(\d[\d.]*)", re.IGNORECASE)
@@ -94,7 +94,10 @@ def _header(reading: Reading, keys: dict[str, str]) -> _Header:
         ) from error
     reading.told.agree(where, rows, columns)
     x, y = length_cm(keys.get("COL_SPACING", "")), length_cm(keys.get("ROW_SPACING", ""))
-    quantity, factor = pressure_unit(keys.get("UNITS", "raw").strip(_BLANKS))
+    unit = keys.get("UNITS", "raw").strip(_BLANKS)
+    quantity, factor = pressure_unit(unit)
+    for note in taken_as_they_are(unit):
+        reading.assume(note)
     first, last = keys.get("START_FRAME", ""), keys.get("END_FRAME", "")
     if first.isdecimal() and last.isdecimal() and 0 <= int(last[:9]) - int(first[:9]) < 10**7:
         reading.report.expect(int(last[:9]) - int(first[:9]) + 1)

@@ -14,7 +14,7 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.words.dialect import Dialect
-from tactile_graph_sources.readers.words.units import length_cm, pressure_unit
+from tactile_graph_sources.readers.words.units import length_cm, pressure_unit, taken_as_they_are
 
 _KEYED = re.compile(r'"?[A-Za-z]')
 _CLOCK = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)")
@@ -134,7 +134,10 @@ def _flush(reading: Reading, dialect: Dialect, state: _State) -> Iterator[Frame]
         return
     if reading.is_repeat(sensor.line, state.frame or 0, name, sensor.name):
         return
-    quantity, factor = pressure_unit(state.units or _peak_unit(sensor))
+    unit = state.units or _peak_unit(sensor)
+    quantity, factor = pressure_unit(unit)
+    for note in taken_as_they_are(unit):
+        reading.assume(note)
     yield reading.frame(
         values,
         pitch_cm=_pitch(sensor),

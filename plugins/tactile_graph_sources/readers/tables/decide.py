@@ -35,9 +35,9 @@ from tactile_graph_sources.readers.words.names import ColumnsTold, named, units_
 from tactile_graph_sources.readers.words.told import Told
 from tactile_graph_sources.readers.words.units import (
     NO_UNITS,
-    OHMS,
     UNIT_WORDS,
     length_unit,
+    taken_as_they_are,
     value_unit,
 )
 
@@ -98,7 +98,7 @@ def layout_of(
         return base
     if table.named.is_long:
         return _long(base, table, told.of_columns)
-    base = replace(base, assumed=(*base.assumed, *_strange_unit(table)))
+    base = replace(base, assumed=(*base.assumed, *_strange_unit(base, table)))
     date = table.dates[0] if table.dates and _CLOCK in roles else None
     base = replace(base, roles=roles, date=date)
     if roles.get("time") is not None:
@@ -208,19 +208,17 @@ def _several_units(table: Table) -> str:
 
 
 def _units(table: Table) -> set[str]:
-    """Return the units that the names of cells say, an empty text for none."""
-    names = table.named.names
-    return units_of([names[k] for k in table.named.cells]) if names else set()
+    """Return the units that the names of cells or values say, an empty text for none."""
+    named = table.named
+    columns = [named.roles["value"]] if named.is_long else named.cells
+    return units_of([named.names[k] for k in columns]) if named.names else set()
 
 
-def _strange_unit(table: Table) -> tuple[str, ...]:
-    """Return the note on a unit of all cells that stands for no known quantity."""
+def _strange_unit(base: Layout, table: Table) -> tuple[str, ...]:
+    """Return the note on a unit of all values that stands for no known quantity."""
     units = _units(table)
     unit = units.pop() if len(units) == 1 else ""
-    if not unit or value_unit(unit)[0] != "raw" or unit.lower() in NO_UNITS:
-        return ()
-    falls = ", which falls under load" if OHMS.fullmatch(unit.lower()) else ""
-    return (f"values in {unit!r}{falls} taken as they are",)
+    return taken_as_they_are(unit) if unit and base.said.quantity == "raw" else base.said.notes
 
 
 def _in_unit(base: Layout, table: Table) -> Layout:
@@ -302,7 +300,8 @@ def _long(base: Layout, table: Table, told: ColumnsTold) -> Layout:
         said = replace(said, quantity=table.named.quantity, factor=table.named.factor)
     base = replace(base, kind="long", roles=roles, said=said, time_format=told.time_format)
     base = timed(base, table) if "time" in roles else base
-    base = replace(base, assumed=(*base.assumed, *_unread(base, table)))
+    notes = *_strange_unit(base, table), *_unread(base, table)
+    base = replace(base, assumed=(*base.assumed, *notes))
     factors = {role: length_unit(names[role]) for role in ("row", "column")}
     apart = [spacing(table.rows[:, roles[r]], bool(f)) for r, f in factors.items()]
     if apart[0] is None or apart[1] is None:

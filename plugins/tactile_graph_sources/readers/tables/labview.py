@@ -10,7 +10,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from tactile_graph_sources.readers.words.preamble import Described
-from tactile_graph_sources.readers.words.units import value_unit
 
 _FIRST = "LabVIEW Measurement"
 _OPENS = "Channels"
@@ -105,8 +104,7 @@ def _said(words: dict[str, list[str]], said: Described, in_time: bool) -> Descri
     """Return what is said, with the unit and the time from row to row of all channels."""
     units = set(words.get("Y_Unit_Label", []))
     if len(units) == 1:
-        quantity, factor = value_unit(units.pop())
-        said = replace(said, quantity=quantity, factor=factor)
+        said = said.in_unit(units.pop())
     steps = set(words.get("Delta_X", []))
     try:
         step_s = float(steps.pop().replace(",", ".")) if len(steps) == 1 and in_time else 0.0

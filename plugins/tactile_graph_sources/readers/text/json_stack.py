@@ -6,6 +6,7 @@ import json
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -129,7 +130,7 @@ def frames_of(reading: Reading, entries: Entries, damage: Sequence[Damage] = ())
     good = [a for a in arrays if a is not None and a.shape == usual]
     shape = usual if len(usual) == 2 else _shape(reading, np.stack(good), entries.said)
     reading.told.agree(where, *shape)
-    reading.recognised(entries.why)
+    reading.recognised(entries.why, entries.said.notes)
     reading.report.expect(len(arrays))
     entries = _without_stamps(entries)
     factor = _time_factor(reading, entries)
@@ -389,7 +390,9 @@ def _of_object(where: str, content: dict[str, Any], sensor: str | None) -> Entri
     deep = {k: v for k, v in lists.items() if isinstance(v[0], list | dict)}
     key = _only(where, deep or lists)
     inner = entries_of(where, lists[key], sensor)
-    said = _said(content) if _said(content) != Described() else inner.said
+    said = _said(content)
+    if said == Described():
+        said = replace(inner.said, strange_unit=said.strange_unit or inner.said.strange_unit)
     if inner.times is None and times is not None and len(times) == len(inner.values):
         return inner._replace(times=times, time_name=time, said=said, why=f"{key!r}: {inner.why}")
     return inner._replace(said=said, why=f"{key!r}: {inner.why}")

@@ -19,7 +19,7 @@ from tactile_graph_sources.readers.words.units import UNIT_WORDS, value_unit
 _UNITS_OF_TIME = {
     1.0: "s sec secs second seconds sekunde sekunden seconde secondes segundos secondi",
     1e-3: "ms msec msecs millis millisecond milliseconds millisekunden millisecondes",
-    1e-6: "us µs μs usec usecs micros microsecond microseconds mikrosekunden microsecondes",
+    1e-6: r"us µs μs \xb5s usec usecs micros microsecond microseconds mikrosekunden microsecondes",
     1e-9: "ns nsec nsecs nanos nanosecond nanoseconds nanosekunden nanosecondes",
     60.0: "min mins minute minutes minuten minutos minuti",
     3600.0: "h hr hrs hour hours std stunde stunden heures horas ore",
@@ -46,6 +46,7 @@ _ROLES = {
 ROLES = {word: role for role, words in _ROLES.items() for word in words.split()}
 _UNIT = re.compile(r"^(.*?)\s*(?:\[([^\]\d][^\]]*)\]|\(([^)\d][^)]*)\)|[_/ ]([^\W\d_]+\d?))$")
 _BRACKETED = re.compile(r"[\[(]\s*([^\W\d_][^\])]*?)\s*[\])]\s*$")
+_LIKE_A_PLACE = re.compile(r"[a-z]+\W?\d+", re.IGNORECASE)
 _PARTS = {
     "nsec": 1e-9,
     "nsecs": 1e-9,
@@ -274,7 +275,31 @@ def _unit_of_cells(names: Sequence[str]) -> tuple[str, float]:
 
 def units_of(names: Sequence[str]) -> set[str]:
     """Return what stands in brackets behind names; an empty text for those without."""
-    return {found[1] if (found := _BRACKETED.search(n)) else "" for n in names}
+    return {_unit_behind(n)[1] for n in names}
+
+
+def _unit_behind(name: str) -> tuple[str, str]:
+    """Return the name of a cell and what stands in brackets behind it: ``R1C1 (N/cm2)``.
+
+    A unit with a digit, which is none of the cell's, needs no brackets.
+    """
+    if found := _BRACKETED.search(name):
+        return name[: found.start()].rstrip(), found[1]
+    base, _, last = name.rpartition(" ")
+    has_digit = any(c.isdecimal() for c in last)
+    return (base, last) if base and has_digit and value_unit(last)[0] != "raw" else (name, "")
+
+
+def _without_units(names: Sequence[str]) -> list[str]:
+    """Return names without units behind numbers: known ones, or the one that all of them have."""
+    parts = [_unit_behind(n) for n in names]
+    parts = [(b, u if any(c.isdecimal() for c in b) else "") for b, u in parts]
+    units = {u for _, u in parts} - {""}
+    alike = len(units) == 1 and not any(map(_LIKE_A_PLACE.fullmatch, units))
+    return [
+        base if unit and (alike or value_unit(unit)[0] != "raw") else name
+        for name, (base, unit) in zip(names, parts, strict=True)
+    ]
 
 
 def _is_value(name: str) -> bool:
@@ -294,7 +319,7 @@ def _parts(name: str) -> tuple[str, str]:
 
 def _cells(names: Sequence[str]) -> tuple[tuple[int, ...], tuple[Place, ...], tuple[int, ...]]:
     """Return the columns that are cells by their names, with their places or their numbers."""
-    lower = [n.lower() for n in names]
+    lower = [n.lower() for n in _without_units(names)]
     for pattern, column_first in _PAIRS:
         found = [(k, m) for k, n in enumerate(lower) if (m := pattern.fullmatch(n))]
         if len(found) >= FEWEST_CELLS and 2 * len(found) > len(names):

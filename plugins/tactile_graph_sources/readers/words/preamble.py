@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from tactile_graph.quantities import is_quantity
 from tactile_graph_sources.readers.words.units import (
     UNIT_WORDS,
     length_cm,
+    taken_as_they_are,
     value_unit,
     without_length_unit,
 )
@@ -52,6 +53,20 @@ class Described:
     factor: float = 1.0
     frame_s: float | None = None
     origin_cm: tuple[float, float] | None = None
+    strange_unit: str = field(default="", compare=False)
+    """A unit that stands for no known quantity."""
+
+    def in_unit(self, unit: str) -> Described:
+        """Return what is said with a unit of the values; one not known takes back no quantity."""
+        quantity, factor = value_unit(unit)
+        if quantity == "raw":
+            return replace(self, strange_unit=unit)
+        return replace(self, quantity=quantity, factor=factor)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is told of values that nobody says the quantity of."""
+        return taken_as_they_are(self.strange_unit) if self.quantity == "raw" else ()
 
 
 def described_by(named: Mapping[str, Any]) -> Described:
@@ -82,7 +97,7 @@ def _flat(value: Any) -> NDArray[Any]:
 
 
 def _plain(value: Any) -> Any:
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else value
+    return value.decode("utf-8", "backslashreplace") if isinstance(value, bytes) else value
 
 
 def described(lines: Iterable[str]) -> Described:
@@ -115,10 +130,7 @@ def _take(said: Described, meaning: str, value: str, unit: str) -> Described:
         pitch = length_cm(value, unit)
         return said if pitch is None else replace(said, pitch_cm=(pitch, pitch))
     if meaning == "unit":
-        quantity, factor = value_unit(value)
-        if quantity == "raw" and said.quantity != "raw":
-            return said  # a unit that nobody knows takes back no quantity
-        return replace(said, quantity=quantity, factor=factor)
+        return said.in_unit(value)
     if meaning == "quantity":
         quantity, factor = (value, 1.0) if is_quantity(value) else value_unit(value)
         if quantity in ("raw", said.quantity):  # a unit of it has told its factor, too

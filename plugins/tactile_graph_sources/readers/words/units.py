@@ -12,13 +12,30 @@ _KILOPASCAL = {
     "bar": 100.0,
     "mbar": 0.1,
     "mmhg": 0.133322387415,
+    "cmhg": 1.33322387415,
+    "inhg": 3.386388640341,
+    "torr": 0.133322368421,
+    "mmh2o": 0.00980665,
+    "cmh2o": 0.0980665,
+    "inh2o": 0.24908891,
     "psi": 6.894757293168,
+    "lb/in2": 6.894757293168,
+    "lbf/in2": 6.894757293168,
+    "n/m2": 1e-3,
+    "kn/m2": 1.0,
     "n/cm2": 10.0,
     "n/mm2": 1e3,
     "kg/cm2": 98.0665,
+    "kgf/cm2": 98.0665,
+    "kp/cm2": 98.0665,
     "g/cm2": 0.0980665,
+    "gf/cm2": 0.0980665,
     "atm": 101.325,
+    "pascal": 1e-3,
+    "kilopascal": 1.0,
 }
+_SQUARED = re.compile(r"²|\\xb2|\*\*2|\^2")
+"""How files raise to the second power; a Latin-1 sign is not decoded in a text of UTF-8."""
 _VALUES = {
     "v": ("volt", 1.0), "volt": ("volt", 1.0), "volts": ("volt", 1.0), "mv": ("volt", 1e-3),
     "g": ("gram", 1.0), "gram": ("gram", 1.0), "grams": ("gram", 1.0), "kg": ("gram", 1e3),
@@ -51,7 +68,7 @@ def pressure_unit(text: str) -> tuple[str, float]:
     (str, float)
         ``("kilopascal", factor)`` for pressures, ``("raw", 1.0)`` for anything else.
     """
-    name = text.strip().strip('"').lower().replace("²", "2").replace("^", "").replace(" ", "")
+    name = _SQUARED.sub("2", text.strip().strip('"').lower()).replace(" ", "")
     name = name.removesuffix("s") if name not in _KILOPASCAL else name
     factor = _KILOPASCAL.get(name)
     return ("raw", 1.0) if factor is None else ("kilopascal", factor)
@@ -71,6 +88,16 @@ def value_unit(text: str) -> tuple[str, float]:
         ``("volt", 1e-3)`` and so on; ``("raw", 1.0)`` for anything else.
     """
     return _VALUES.get(text.strip().lower(), pressure_unit(text))
+
+
+def taken_as_they_are(unit: str) -> tuple[str, ...]:
+    """Return the note on values in a unit that stands for no known quantity; none for others."""
+    unit = unit.strip().strip('"')
+    name = unit.lower()
+    if value_unit(unit)[0] != "raw" or name in NO_UNITS or not any(c.isalpha() for c in unit):
+        return ()
+    falls = ", which falls under load" if OHMS.fullmatch(name) else ""
+    return (f"values in {unit!r}{falls} taken as they are",)
 
 
 def length_unit(name: str) -> float | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tactile_graph_sources.readers.words.units import length_cm, pressure_unit
+from tactile_graph_sources.readers.words.units import length_cm, pressure_unit, taken_as_they_are
 
 
 @pytest.mark.parametrize(
@@ -30,6 +30,32 @@ def test_units_that_are_no_pressure_are_raw(text: str) -> None:
     assert pressure_unit(text) == ("raw", 1.0)
 
 
-@pytest.mark.parametrize(("text", "factor"), [("kPa", 1.0), ("N/cm²", 10.0), ("PSI", 6.894757293)])
+@pytest.mark.parametrize(
+    ("text", "factor"),
+    [
+        ("kPa", 1.0),
+        ("N/cm²", 10.0),
+        (r"N/cm\xb2", 10.0),
+        ("PSI", 6.894757293),
+        ("lbf/in2", 6.894757293),
+        ("kgf/cm^2", 98.0665),
+        ("gf/cm²", 0.0980665),
+        ("cmH2O", 0.0980665),
+        ("inH2O", 0.24908891),
+        ("inHg", 3.386389),
+        ("Torr", 0.1333224),
+        ("Pascals", 1e-3),
+    ],
+)
 def test_pressures_have_a_factor_to_kilopascal(text: str, factor: float) -> None:
     assert pressure_unit(text) == ("kilopascal", pytest.approx(factor))
+
+
+@pytest.mark.parametrize("text", ["furlongs", "kohm"])
+def test_values_in_a_unit_that_nobody_knows_are_told(text: str) -> None:
+    assert taken_as_they_are(text)[0].startswith(f"values in {text!r}")
+
+
+@pytest.mark.parametrize("text", ["", "a.u.", "raw", "1", "kPa", "mV"])
+def test_values_without_a_unit_or_in_a_known_one_are_not_told(text: str) -> None:
+    assert taken_as_they_are(text) == ()
