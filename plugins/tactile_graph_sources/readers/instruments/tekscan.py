@@ -68,10 +68,10 @@ def read(reading: Reading) -> Iterator[Frame]:
     block: _Block | None = None
     for number, line in lines:
         text = line.strip()
-        start = _FRAME.match(text)
+        start = _FRAME.match(text) and _FRAME.match(header.dialect.pointed(text))
         if start or text.startswith("@@"):
             yield from _flush(reading, header, block)
-            block = _open(header, number, text, start) if start else None
+            block = _open(header, number, start) if start else None
             if not start:
                 break
         elif text.strip(_BLANKS):
@@ -102,8 +102,17 @@ def _header(reading: Reading, keys: dict[str, str]) -> _Header:
     if first.isdecimal() and last.isdecimal() and 0 <= int(last[:9]) - int(first[:9]) < 10**7:
         reading.report.expect(int(last[:9]) - int(first[:9]) + 1)
     seconds = _number(keys.get("SECONDS_PER_FRAME", ""))
-    dialect = Dialect.of([line for line in reading.head.first(200) if line.count(";") > 2] or [","])
-    return _Header(rows, columns, (x, y) if x and y else None, quantity, factor, seconds, dialect)
+    pitch_cm = (x, y) if x and y else None
+    return _Header(rows, columns, pitch_cm, quantity, factor, seconds, _dialect(reading.head))
+
+
+def _dialect(head: Head) -> Dialect:
+    """Return how the first rows are written: vendors part the cells by commas, others by tabs."""
+    lines = head.first(200)
+    start = next((k for k, line in enumerate(lines) if line.startswith("ASCII_DATA")), -1)
+    texts = [line.strip() for line in lines[start + 1 :]]
+    rows = [text for text in texts if not (_FRAME.match(text) or text.startswith("@@"))]
+    return Dialect.of([row.replace("B", "0") for row in rows] or [","])
 
 
 def _number(text: str) -> float | None:
@@ -114,12 +123,12 @@ def _number(text: str) -> float | None:
     return number if np.isfinite(number) else None
 
 
-def _open(header: _Header, line: int, title: str, start: re.Match[str]) -> _Block:
+def _open(header: _Header, line: int, start: re.Match[str]) -> _Block:
     number = int(start[1])
     time_s = _number(start[2]) if start[2] else None
     if time_s is None and header.seconds_per_frame is not None:
         time_s = (number - 1) * header.seconds_per_frame
-    return _Block(line, number, title, time_s)
+    return _Block(line, number, start.string, time_s)
 
 
 def _flush(reading: Reading, header: _Header, block: _Block | None) -> Iterator[Frame]:

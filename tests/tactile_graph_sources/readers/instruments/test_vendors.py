@@ -87,6 +87,27 @@ def test_tekscan_sums_are_the_vendors(real: bool, tmp_path: Path) -> None:
     assert frames[2].time_s == pytest.approx(0.2)
 
 
+@pytest.mark.parametrize(
+    ("separator", "comma"), [("\t", False), ("  ", False), (";", True), ("\t", True), (" ", True)]
+)
+def test_tekscan_cells_are_parted_by_commas_tabs_or_blanks(
+    separator: str, comma: bool, tmp_path: Path
+) -> None:
+    values = blobs(5, 8, 6)
+    with_missing(values)
+    lines = []
+    for k, line in enumerate(tekscan_text(values, "kPa").splitlines()):
+        row = "B" in line or line[:1].isdecimal()
+        stamp = f" {0.1 * int(line.split()[1]):.1f}" if line.startswith("Frame") else ""
+        text = line.replace(",", separator) if row else line + stamp
+        lines.append(text.replace(".", ",") if comma and k > 10 else text)
+    frames, report = frames_of(write(tmp_path, "\n".join(lines)))
+    assert not report.troubles
+    shown = np.where(np.isnan(values), 0.0, np.round(values, 2))
+    np.testing.assert_array_equal([f.image.values for f in frames], shown)
+    assert [f.time_s for f in frames] == pytest.approx([0.1, 0.2, 0.3, 0.4, 0.5])
+
+
 @REAL
 def test_tekscan_film_in_kilopascal_masks_cells_outside_the_insole(
     real: bool, tmp_path: Path
