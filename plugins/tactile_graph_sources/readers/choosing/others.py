@@ -25,7 +25,7 @@ _MARKS = (
     (b"\x80\x03", "a Python pickle", ""),
     (b"\x80\x04", "a Python pickle", ""),
     (b"\x80\x05", "a Python pickle", ""),
-    (b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP: mcap convert in.bag out.mcap"),
+    (b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP: mcap convert FILE out.mcap"),
     (b"SQLite format 3", "an SQLite database (a ROS 2 bag?)",
      "convert it to MCAP, or save its table as CSV"),
     (b"<", "HTML or XML", "open it in a spreadsheet, and save its table as CSV"),

@@ -1,7 +1,8 @@
-"""Messages of ROS 2 in CDR, without ROS: images of one channel, and arrays of numbers.
+"""Messages of ROS 1, and of ROS 2 in CDR, without ROS: images of one channel, arrays of numbers.
 
 OMG, DDS-XTypes 1.3, chapter 7.4: numbers are aligned to their own size, counted from behind the
-four bytes of the head; the definitions are those of sensor_msgs and std_msgs of ROS 2.
+four bytes of the head. ROS 1 writes them little-endian, one behind the other, without a head. The
+definitions are those of sensor_msgs and std_msgs, whose header in ROS 1 counts messages, too.
 """
 
 from __future__ import annotations
@@ -29,19 +30,23 @@ def decoder_of(encoding: str, schema: str) -> Callable[[bytes], Array] | None:
 
     What it returns raises ValueError at a damaged message.
     """
-    package, _, name = schema.partition("/msg/")
-    if encoding != "cdr":
+    cursor = {"cdr": _Cursor, "ros1": _CursorOfRos1}.get(encoding)
+    package, _, name = schema.partition("/msg/" if encoding == "cdr" else "/")
+    if cursor is None:
         return None
     if (package, name) == ("sensor_msgs", "Image"):
-        return _image
+        return lambda data: _image(cursor(data))
     kind = _ARRAYS.get(name.removesuffix("MultiArray")) if name.endswith("MultiArray") else None
     if package != "std_msgs" or kind is None:
         return None
-    return lambda data: _multi_array(data, kind)
+    return lambda data: _multi_array(cursor(data), kind)
 
 
 class _Cursor:
     """Reads one value after the other."""
+
+    header_size = 2
+    """Numbers of a header before its text: second, nanosecond."""
 
     def __init__(self, data: bytes) -> None:
         if len(data) < 4:
@@ -72,10 +77,26 @@ class _Cursor:
         return self._data[start : self._at]
 
 
-def _image(data: bytes) -> Array:
+class _CursorOfRos1(_Cursor):
+    """The same for messages of ROS 1."""
+
+    header_size = 3
+    """The number of the message before these two."""
+
+    def __init__(self, data: bytes) -> None:
+        self._data = memoryview(data)
+        self._order = "<"
+        self._at = 0
+
+    def _taken(self, size: int, aligned: int) -> memoryview:
+        return super()._taken(size, 1)
+
+
+def _image(cursor: _Cursor) -> Array:
     """Return the pixels of a ``sensor_msgs/msg/Image``, shape (rows, columns)."""
-    cursor = _Cursor(data)
-    cursor.uint32(), cursor.uint32(), cursor.text()  # the header: second, nanosecond, frame
+    for _ in range(cursor.header_size):
+        cursor.uint32()
+    cursor.text()  # the frame of reference
     rows, columns, encoding = cursor.uint32(), cursor.uint32(), cursor.text()
     big, step, size = cursor.uint8() != 0, cursor.uint32(), cursor.uint32()
     kind = _ENCODINGS.get(encoding)
@@ -89,9 +110,8 @@ def _image(data: bytes) -> Array:
     return np.ascontiguousarray(lines).view(dtype).reshape(rows, columns)
 
 
-def _multi_array(data: bytes, kind: str) -> Array:
+def _multi_array(cursor: _Cursor, kind: str) -> Array:
     """Return the numbers of a ``std_msgs/msg/…MultiArray``, as a matrix where it has two axes."""
-    cursor = _Cursor(data)
     sizes = []
     for _ in range(cursor.uint32()):
         cursor.text()

@@ -1,7 +1,7 @@
 """MCAP logs: the only topic whose messages hold frames, or the one that ``sensor`` names.
 
-Read are messages in JSON, and in ROS 2's CDR images of one channel and arrays of numbers; their
-libraries of types are not needed for these.
+Read are messages in JSON, and of ROS 1 and 2 (CDR) images of one channel and arrays of numbers;
+their libraries of types are not needed for these.
 """
 
 from __future__ import annotations

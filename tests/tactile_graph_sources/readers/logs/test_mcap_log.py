@@ -71,6 +71,17 @@ def multi_array(frame: np.ndarray, dtype: str, sizes: Iterable[int]) -> bytes:
     return b"\0\1\0\0" + padded(body, np.dtype(dtype).itemsize) + frame.astype(dtype).tobytes()
 
 
+def in_ros_1(frame: np.ndarray, schema: str) -> bytes:
+    """Return a message of sensor_msgs/Image or std_msgs/UInt16MultiArray as ROS 1 writes it."""
+    (rows, columns), data = frame.shape, frame.astype("<u2").tobytes()
+    if schema.endswith("Image"):
+        head = struct.pack("<IIII", 7, 3, 4, 3) + b"mat" + struct.pack("<II", rows, columns)
+        head += struct.pack("<I", 6) + b"mono16" + struct.pack("<BII", 0, 2 * columns, len(data))
+        return head + data
+    axes = [struct.pack("<I", 4) + b"axis" + struct.pack("<II", n, 0) for n in frame.shape]
+    return struct.pack("<I", 2) + b"".join(axes) + struct.pack("<II", 0, frame.size) + data
+
+
 def values(path: Path, **told: object) -> np.ndarray:
     return np.array([f.image.values for f in frames_of(path, **told)[0]])
 
@@ -102,6 +113,18 @@ def test_images_of_ros_give_frames(
     messages = [image(f, encoding, dtype, big, extra) for f in OBLONG]
     path = log(tmp_path / "a.mcap", pad=("cdr", "sensor_msgs/msg/Image", messages))
     np.testing.assert_array_equal(values(path), OBLONG)
+
+
+@pytest.mark.parametrize("schema", ["sensor_msgs/Image", "std_msgs/UInt16MultiArray"])
+def test_messages_of_ros_1_give_frames_and_cut_ones_are_told(tmp_path: Path, schema: str) -> None:
+    messages = [in_ros_1(f, schema) for f in OBLONG]
+    np.testing.assert_array_equal(
+        values(log(tmp_path / "a.mcap", pad=("ros1", schema, messages))), OBLONG
+    )
+    messages[1] = messages[1][:-1]
+    frames, report = frames_of(log(tmp_path / "b.mcap", pad=("ros1", schema, messages)))
+    assert len(frames) == len(OBLONG) - 1
+    assert "a message is damaged: it is cut off" in report.troubles[0][1]
 
 
 @pytest.mark.parametrize(
@@ -358,6 +381,7 @@ def test_without_the_library_it_says_what_to_install(
 
 
 def test_types_that_need_their_definitions_are_not_read() -> None:
-    assert decoder_of("ros1", "sensor_msgs/Image") is None
+    assert decoder_of("ros1", "geometry_msgs/Pose") is None
+    assert decoder_of("protobuf", "sensor_msgs/Image") is None
     assert decoder_of("cdr", "geometry_msgs/msg/Pose") is None
     assert decoder_of("cdr", "std_msgs/msg/StringMultiArray") is None
