@@ -6,6 +6,7 @@ import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -148,12 +149,38 @@ def open_pipeline(
     if name is None:
         raise UsageError(f"name a pipeline, or a file of one\n{offered()}")
     pipeline = load(name, found)
-    replaced = dict(assignment("--set", s) for s in settings)
+    replaced = dict(assignment("--set", s, partial(_takes_text, pipeline)) for s in settings)
     step = source_named(pipeline, recordings, source, source_settings, span or Span())
     if replaced or step:
         pipeline = pipeline.with_settings(replaced, step)
     _help_preparing(name, recordings, settings)
     return pipeline
+
+
+def _takes_text(pipeline: Pipeline, name: str) -> bool:
+    """Return whether ``node.setting`` may be any text."""
+    from tactile_graph.steps.settings import takes_text
+
+    node, _, setting = name.rpartition(".")
+    signature = pipeline.nodes[node].signature if node in pipeline.nodes else None
+    return signature is not None and takes_text(signature, setting)
+
+
+def source_settings_of(step: str, texts: Sequence[str]) -> dict[str, Any]:
+    """Return settings of a source from texts such as ``rows=12``, not checked yet.
+
+    Raises
+    ------
+    UsageError
+        If a text is none.
+    """
+    from tactile_graph.pipeline.document import assignment
+    from tactile_graph.steps.settings import takes_text
+
+    found = registry.installed()
+    known = found.step(step) if found.has("steps", step) else None
+    is_text = {s.name for s in known.settings if takes_text(known, s.name)} if known else set()
+    return dict(assignment("--with", text, is_text.__contains__) for text in texts)
 
 
 def _help_preparing(name: str, recordings: Sequence[str], settings: Sequence[str]) -> None:
@@ -193,8 +220,6 @@ def source_named(
     UsageError
         If there is none, or it is not allowed.
     """
-    from tactile_graph.pipeline.document import assignment
-
     own = pipeline.source
     found = registry.installed()
     if step is not None and found.has("steps", step):
@@ -212,7 +237,7 @@ def source_named(
         step = own.name
     if own is not None and step == own.name and not recordings:
         base = own.given
-    base.update(assignment("--with", text) for text in given)
+    base.update(source_settings_of(step, given))
     wanted = {text.partition("=")[0].strip() for text in given}
     if not recordings and COUNT not in wanted and span.stop is not None and takes_count(step):
         base[COUNT] = span.stop

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pathlib
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
@@ -350,8 +350,17 @@ class _Reader:
         return result
 
 
-def assignment(option: str, text: str) -> tuple[str, Any]:
+def assignment(
+    option: str, text: str, takes_text: Callable[[str], bool] = lambda _: False
+) -> tuple[str, Any]:
     """Return name and value of ``name=value``, the value read as YAML.
+
+    Parameters
+    ----------
+    option, text : str
+    takes_text : callable
+        Whether a setting of some name may be any text: what is no YAML, such as ``%H:%M`` or
+        ``#3``, is taken as it is typed there.
 
     Raises
     ------
@@ -365,6 +374,10 @@ def assignment(option: str, text: str) -> tuple[str, Any]:
     if not value.strip():
         return name.strip(), ""
     document = read_document(value, f"{option} {name.strip()}")
+    if document.problems and takes_text(name.strip()):
+        return name.strip(), value.strip()
+    if value.lstrip().startswith("#"):
+        raise UsageError(f"{option} {text}: a comment of YAML; put a text in quotes")
     if document.problems:
         raise UsageError(f"{option} {text}: {document.problems[0].message}")
     return name.strip(), document.data

@@ -73,6 +73,12 @@ def adapter(setting: Setting) -> TypeAdapter[Any]:
         return _adapter.__wrapped__(setting)
 
 
+def takes_text(signature: Signature, name: str) -> bool:
+    """Return whether a setting of that name is there, and is a text, whichever it be."""
+    kinds = next((set(members(s.annotation)) for s in signature.settings if s.name == name), set())
+    return str in kinds and kinds <= {str, Path, type(None)}
+
+
 def validate_settings(
     signature: Signature, given: dict[str, Any]
 ) -> tuple[dict[str, Any], list[Trouble]]:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from tactile_graph.cli.arguments import COUNT, takes_count
+from tactile_graph.cli.arguments import COUNT, source_settings_of, takes_count
 from tactile_graph.engine.calls.sources import open_source
 from tactile_graph.errors import Mark, UsageError
-from tactile_graph.pipeline.document import assignment
 from tactile_graph.pipeline.graph import Source
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.injected import Report
@@ -41,14 +40,9 @@ def as_many(step: str, settings: Mapping[str, Any], n_frames: int | None) -> dic
     return {COUNT: n_frames, **settings}
 
 
-def given_settings(texts: Sequence[str]) -> dict[str, Any]:
-    """Return settings from texts such as ``rows=12``; raises UsageError if one is none."""
-    return dict(assignment("--with", text) for text in texts)
-
-
 def reader_settings(texts: Sequence[str]) -> dict[str, Any]:
     """Return the settings of ``recording`` that texts give, checked; raises UsageError."""
-    given = given_settings(texts)
+    given = source_settings_of("recording", texts)
     checked = _checked("recording", {"path": "recording", **given})
     return {k: v for k, v in checked.items() if k in given}
 

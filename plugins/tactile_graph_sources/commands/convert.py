@@ -150,9 +150,11 @@ def _frames(
     seed: int,
     report: Report,
 ) -> Iterator[Frame]:
-    from tactile_graph_sources.commands.any_source import as_many, frames_of_source, given_settings
+    from tactile_graph.cli.arguments import source_settings_of
+    from tactile_graph_sources.commands.any_source import as_many, frames_of_source
 
-    given = {**given_settings(settings), **{k: v for k, v in told.items() if v is not None}}
+    typed = source_settings_of(source or "recording", settings)
+    given = {**typed, **{k: v for k, v in told.items() if v is not None}}
     if source is None:
         given["path"] = [str(r) for r in recordings]
     else:

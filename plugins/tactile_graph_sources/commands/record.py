@@ -174,12 +174,13 @@ def _frames(
     report: Report,
 ) -> Iterator[Frame]:
     """Return the frames of a source, as many and as long as it is told; it may end by itself."""
+    from tactile_graph.cli.arguments import source_settings_of
     from tactile_graph.plugins.registry import installed
-    from tactile_graph_sources.commands.any_source import as_many, frames_of_source, given_settings
+    from tactile_graph_sources.commands.any_source import as_many, frames_of_source
 
     known = [s.name for s in installed().step(step).settings]
     own = {k: v for k, v in limits.items() if k in known and v is not None}
-    told = as_many(step, {**given, **given_settings(texts), **own}, limits["n_frames"])
+    told = as_many(step, {**given, **source_settings_of(step, texts), **own}, limits["n_frames"])
     frames = frames_of_source(step, told, report)
     if set(own) == {k for k, v in limits.items() if v is not None}:
         return frames

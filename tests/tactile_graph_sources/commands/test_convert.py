@@ -230,6 +230,15 @@ def test_several_recordings_and_any_setting_of_their_reader(
     np.testing.assert_array_equal(read[6].image.values, made[0].image.values[::-1])
 
 
+def test_the_form_of_times_is_typed_as_it_stands(tmp_path: Path) -> None:
+    lines = [f"16.11.2026 10h{k:02d}," + ",".join("12345678"[:k] + "9" * (9 - k)) for k in range(6)]
+    (tmp_path / "a.csv").write_text("\n".join(["stamp,a1,a2,a3,b1,b2,b3,c1,c2,c3", *lines]))
+    told = ("--with", "time_column=stamp", "--with", "time_format=%d.%m.%Y %Hh%M")
+    run(tmp_path / "a.csv", tmp_path / "b.npz", *told)
+    read = list(recording(path=tmp_path / "b.npz", report=Report()))
+    assert [f.time_s for f in read] == [60.0 * k for k in range(6)]
+
+
 @pytest.mark.parametrize(
     ("args", "message"),
     [

@@ -20,7 +20,7 @@ import pytest
 from rich.console import Console
 
 from helpers_cli import DISCS, broken_plugin, call, install
-from tactile_graph import Frame, load
+from tactile_graph import Frame, Mask, load
 from tactile_graph.cli.output.live_table import LiveTable
 from tactile_graph.engine.tables.columns import columns_of
 
@@ -327,6 +327,26 @@ def test_mistakes_are_told_in_words_without_a_traceback(args, message):
     assert message in got.stderr
     assert "Traceback" not in got.output
     assert got.stdout == ""
+
+
+@pytest.mark.parametrize("text", ["%d.%m.%Y", "#3", "@all", "[a", "*x"])
+def test_a_text_setting_takes_what_is_no_yaml_as_it_is_typed(tmp_path, monkeypatch, text):
+    seen = []
+
+    def told(mask: Mask, *, word: str = "", words: str | list[str] = "") -> float:
+        seen.append(word)
+        return mask.area_cm2
+
+    def fed(*, word: str = "") -> Iterator[Frame]:
+        seen.append(word)
+        yield Frame.of(np.ones((2, 2)), quantity="volt")
+
+    install(monkeypatch, tmp_path, steps={"told": told, "fed": fed})
+    (tmp_path / "p.yaml").write_text(DISCS.replace("step: disc,", "step: told,"))
+    words = ("run", tmp_path / "p.yaml", "--source", "fed", "--with", f"word={text}", "--set")
+    assert call(*words, f"circle.word={text}").exit_code == 0
+    assert seen == [text, text]
+    assert f"--set circle.words={text}: " in call(*words, f"circle.words={text}").stderr
 
 
 def test_without_a_pipeline_run_says_what_there_is():
