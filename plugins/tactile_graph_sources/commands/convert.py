@@ -127,6 +127,8 @@ def _check(recordings: list[Path], target: Path, source: str | None) -> str:
     fitting = [k for k in kinds if name.lower().endswith(k) and len(name) > len(k)]
     if not fitting:
         near = did_you_mean(target.suffix.lower(), kinds) if target.suffix else ""
+        if target.suffix.lower() == ".mat" and ".csv" in kinds:
+            near = "; MATLAB reads .csv by readtable"
         raise click.UsageError(f"TARGET must end in {', '.join(kinds)}, got {name!r}{near}")
     if bool(recordings) == (source is not None):
         raise click.UsageError("give recordings before TARGET, or --source, and not both")

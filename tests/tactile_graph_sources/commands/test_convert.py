@@ -158,6 +158,7 @@ def test_frames_that_ctrl_c_alone_ends_are_kept(
         (".csv", "must end"),
         ("b.cvs", "got 'b.cvs'; did you mean '.csv'?"),
         ("b.csv.gz", "TARGET must end in .zarr"),
+        ("b.mat", ", got 'b.mat'; MATLAB reads .csv by readtable"),
         ("a.npz", "is there already"),
     ],
 )
