@@ -197,15 +197,21 @@ def moments(uv: NDArray[np.float64]) -> Moments:
 
 
 def rotated(
-    values: NDArray[np.bool_], column: float, row: float, cos: float, sin: float, aspect: float
+    values: NDArray[np.bool_],
+    column: float,
+    row: float,
+    cos: float,
+    sin: float,
+    width: float,
+    height: float,
 ) -> Rotated:
     """Return the turned cells and the place of the first, in cells right and down of the centre."""
     rows, columns = np.nonzero(values)
     if len(rows) == 0:
         return np.zeros((0, 0), np.bool_), 0, 0
-    dx, dy = columns - column, rows - row
-    u = np.floor((dx * cos - dy * sin / aspect) + 0.5).astype(np.int64)
-    v = np.floor((dx * sin * aspect + dy * cos) + 0.5).astype(np.int64)
+    dx, dy = (columns - column) * width, (rows - row) * height
+    u = np.floor((dx * cos - dy * sin) + 0.5).astype(np.int64)
+    v = np.floor((dx * sin + dy * cos) + 0.5).astype(np.int64)
     left, top = u.min(), v.min()
     out = np.zeros((v.max() - top + 1, u.max() - left + 1), np.bool_)
     out[v - top, u - left] = True

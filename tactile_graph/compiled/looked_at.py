@@ -8,6 +8,7 @@ The look takes some nanoseconds.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -25,6 +26,8 @@ DIMENSIONS, DESCRIPTION = HEAD + 8, HEAD + 40
 """Where numpy's array object holds the number of its dimensions, and what its numbers are."""
 KIND = HEAD + 8
 """Where that holds the letter of their kind."""
+ORDER, FOREIGN = KIND + 2, {"little": ">", "big": "<"}[sys.byteorder]
+"""Where that holds the sign of their bytes' order, and that of the order no machine code takes."""
 BYTE, COUNT, PLACE = ir.IntType(8), ir.IntType(32), ir.IntType(64)
 
 
@@ -64,8 +67,9 @@ def _looked_at(kind: Any, given: Any, c: Any) -> Any:
 
 
 def _refused(kind: Any, c: Any) -> None:
-    layout = {"C": " in order of memory"}.get(kind.layout, "")
-    what = f"an array of {kind.ndim} dimensions of {as_dtype(kind.dtype)}{layout}"
+    layout = {"C": " in order of memory,"}.get(kind.layout, "")
+    numbers = f"{as_dtype(kind.dtype)}{layout} in this machine's byte order"
+    what = f"an array of {kind.ndim} dimensions of {numbers}"
     c.pyapi.err_set_string("PyExc_TypeError", f"this machine code takes {what} here, got another")
 
 
@@ -75,10 +79,17 @@ def _at(builder: Any, thing: Any, offset: int, kind: Any) -> Any:
 
 
 def _of_kind(builder: Any, given: Any, dtype: np.dtype[Any]) -> Any:
-    """Return whether an array's numbers are of a kind: whole, signed, floating, yes or no."""
+    """Return whether an array's numbers are of a kind: whole, signed, floating, yes or no.
+
+    And in the machine's byte order: by read-only arrays of another one numba finds the same code.
+    """
     description = builder.load(_at(builder, given, DESCRIPTION, ir.PointerType(BYTE)))
     letter = builder.load(_at(builder, description, KIND, BYTE))
-    return builder.icmp_unsigned("==", letter, BYTE(ord(dtype.kind)))
+    order = builder.load(_at(builder, description, ORDER, BYTE))
+    return builder.and_(
+        builder.icmp_unsigned("==", letter, BYTE(ord(dtype.kind))),
+        builder.icmp_unsigned("!=", order, BYTE(ord(FOREIGN))),
+    )
 
 
 def _in_order(kind: Any, value: Any, c: Any) -> Any:

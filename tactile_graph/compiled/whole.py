@@ -29,7 +29,7 @@ from tactile_graph.locks import Lock
 OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True}
 """Machine code lets other threads of Python run: the one that reads a pad must not wait for it."""
 
-MADE = "arrays looked at, given back by C, counted without a lock"
+MADE = "arrays and their byte order looked at, given back by C, counted without a lock"
 """How entries are made, beside numba's version: machine code made otherwise is made anew."""
 POLL_S = 0.02
 """Between two looks whether another process has finished."""

@@ -10,17 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.quantities import QuantityName, unit_of
-
-_USUAL_BYTES = frozenset({1, 4, 8})
-"""Of a number; whatever takes others is looked at once more."""
-
+from tactile_graph.wires.native import NATIVE, native
 
 _WORD = np.dtype(np.uint64)
-
-
-def _taken_by_machine_code(values: NDArray[Any]) -> NDArray[Any]:
-    """Return values of half or quadruple precision in double; others as they are."""
-    return values.astype(np.float64) if values.dtype.kind == "f" else values
 
 
 def cells_of(words: NDArray[np.uint64], columns: int) -> NDArray[np.bool_]:
@@ -106,8 +98,9 @@ class Image(_Gridded):
     Parameters
     ----------
     values : ndarray, shape (rows, columns)
-        One number per cell; row 0 is the top of the pad. Half and quadruple precision, which no
-        machine code takes, becomes double. Masked cells of a masked array become invalid.
+        One number per cell; row 0 is the top of the pad. What no machine code takes is
+        copied: half and quadruple precision becomes double, another machine's byte order this
+        one's. Masked cells of a masked array become invalid.
     pitch_cm : (float, float)
         Distance of neighbouring cells along x and y.
     origin_cm : (float, float)
@@ -136,8 +129,8 @@ class Image(_Gridded):
     ) -> None:
         if values.__class__ is not np.ndarray:
             values, valid = unmasked(values, valid)
-        if values.itemsize not in _USUAL_BYTES:
-            values = _taken_by_machine_code(values)
+        if values.dtype not in NATIVE:
+            values = native(values)
         values.setflags(False)  # type: ignore[call-arg]  # by keyword it takes twice as long
         if valid is not None:
             valid.setflags(False)  # type: ignore[call-arg]
@@ -346,8 +339,8 @@ def quick_image(
 ) -> Image:
     """Return ``Image(values, pitch_cm, origin_cm, quantity, valid)`` in half the time.
 
-    Values must be whole numbers or of single or double precision: others are not made double. The
-    array is a plain one: no cells of it are masked.
+    Values must be whole numbers or of single or double precision, in the machine's byte order:
+    others are not made so. The array is a plain one: no cells of it are masked.
     """
     values.setflags(False)  # type: ignore[call-arg]
     if valid is not None:

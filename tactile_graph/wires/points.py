@@ -7,6 +7,8 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.wires.native import NATIVE, native
+
 
 class Points:
     """Positions in pad coordinates. Takes ownership: the array becomes read-only.
@@ -21,6 +23,8 @@ class Points:
     xy_cm: NDArray[np.float64]
 
     def __init__(self, xy_cm: NDArray[np.float64]) -> None:
+        if xy_cm.dtype not in NATIVE:
+            xy_cm = native(xy_cm)
         xy_cm.setflags(False)  # type: ignore[call-arg]  # by keyword it takes twice as long
         _set_xy(self, xy_cm)
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.wires.measure import Measure, axis_off_deg
 from tactile_graph.wires.measure import printed_angle_deg as printed_angle_deg
+from tactile_graph.wires.native import NATIVE, native
 from tactile_graph.wires.points import Points, quick_points
 
 
@@ -136,6 +137,8 @@ class Polygon:
     provides: ClassVar[Mapping[type, str]] = {Points: "points"}
 
     def __post_init__(self) -> None:
+        if self.xy_cm.dtype not in NATIVE:
+            object.__setattr__(self, "xy_cm", native(self.xy_cm))
         self.xy_cm.setflags(False)  # type: ignore[call-arg]  # by keyword it takes longer
 
     @property

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.wires.image import Image, Mask, cells_of, unmasked
+from tactile_graph.wires.native import NATIVE, native
 from tactile_graph.wires.points import Points
 from tactile_graph.wires.shapes import Polygon
 
@@ -424,5 +425,7 @@ def field_of(values: Stack, path: Sequence[str]) -> Stack:
 
 
 def _frozen(array: NDArray[Any]) -> NDArray[Any]:
+    if array.dtype not in NATIVE:
+        array = native(array)
     array.setflags(write=False)
     return array

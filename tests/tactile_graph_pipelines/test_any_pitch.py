@@ -50,3 +50,14 @@ def test_shape_and_size_in_cells_are_the_same_at_any_pitch(name: str) -> None:
         again, its = found(name, pitch_cm)
         assert again == decided
         assert its == pytest.approx(lengths, rel=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PIPELINES[2:])
+def test_cells_that_are_not_square_give_the_same_sides_either_way(name: str) -> None:
+    run = load(name).run
+    sides = []
+    for values, pitch_cm in ((readings(), (1.0, 1.7)), (readings().T, (1.7, 1.0))):
+        got = run(Frame.of(values, pitch_cm))["rectangle"]
+        sides.append((got.length_cm, got.breadth_cm))
+    assert sides[1] == pytest.approx(sides[0], rel=1e-6)

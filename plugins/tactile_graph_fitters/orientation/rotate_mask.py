@@ -29,15 +29,16 @@ def rotate_mask(mask: Mask, axis: Orientation) -> Mask:
     Returns
     -------
     Mask
-        Of the same pitch, just large enough for the cells that are on, one of its cells centred
-        on the axis' centre. It is in pad coordinates but for the turn; what is found in it is
-        turned back with the same ``axis``, as `fit_ellipse_origin` does.
+        Of the same pitch, that of square cells as large where they are not square, just large
+        enough for the cells that are on, one of its cells centred on the axis' centre. It is in pad
+        coordinates but for the turn; what is found in it is turned back with the same ``axis``, as
+        `fit_ellipse_origin` does.
 
     Raises
     ------
     Degenerate
         If no cell is on, the axis is not finite, or the turned mask would take over 2**24 cells:
-        those far from square turn into endless ones.
+        those very far from square turn into endless ones.
 
     Notes
     -----
@@ -46,6 +47,7 @@ def rotate_mask(mask: Mask, axis: Orientation) -> Mask:
     with ``cross3`` fills them.
     """
     (x, y), (px, py) = mask.origin_cm, mask.pitch_cm
+    pitch = px if px == py else math.sqrt(px * py)
     require_finite(axis)
     values, left, top = rotated(
         np.ascontiguousarray(mask.values),
@@ -53,14 +55,15 @@ def rotate_mask(mask: Mask, axis: Orientation) -> Mask:
         (axis.y_cm - y) / py - 0.5,
         math.cos(axis.angle_rad),
         math.sin(axis.angle_rad),
-        px / py,
+        px / pitch,
+        py / pitch,
     )
     if values.size == 0:
         if mask.values.any():
             raise Degenerate(f"turned, cells of {px:g} by {py:g} cm would be too many for a mask")
         raise Degenerate("no cell is on: nothing to turn")
     return Mask(
-        values, mask.pitch_cm, (axis.x_cm + (left - 0.5) * px, axis.y_cm + (top - 0.5) * py)
+        values, (pitch, pitch), (axis.x_cm + (left - 0.5) * pitch, axis.y_cm + (top - 0.5) * pitch)
     )
 
 
@@ -69,13 +72,20 @@ Rotated = tuple[NDArray[np.bool_], int, int]
 
 @compiled_later
 def rotated(
-    values: NDArray[np.bool_], column: float, row: float, cos: float, sin: float, aspect: float
+    values: NDArray[np.bool_],
+    column: float,
+    row: float,
+    cos: float,
+    sin: float,
+    width: float,
+    height: float,
 ) -> Rotated:
     """Return the turned cells and the place of the first, in cells right and down of the centre.
 
     No cells where none is on, or where they would be more than `MOST_CELLS`.
 
-    ``column`` and ``row`` are those of the centre, ``aspect`` the pitch along x over that along y.
+    ``column`` and ``row`` are those of the centre, ``width`` and ``height`` the cells' over the
+    turned cells' pitch.
     """
     rows, columns = values.shape
     first, last = rows, -1
@@ -91,12 +101,12 @@ def rotated(
         if high < 0:
             continue
         first, last = min(first, i), i
-        dy = i - row
+        dy = (i - row) * height
         # A row's turned cells lie between those of its ends.
         for j in (low, high):
-            dx = j - column
-            u = math.floor((dx * cos - dy * sin / aspect) + 0.5)
-            v = math.floor((dx * sin * aspect + dy * cos) + 0.5)
+            dx = (j - column) * width
+            u = math.floor((dx * cos - dy * sin) + 0.5)
+            v = math.floor((dx * sin + dy * cos) + 0.5)
             left, right = min(left, u), max(right, u)
             top, bottom = min(top, v), max(bottom, v)
     # Of floats: the product of two whole numbers may be too large for one.
@@ -104,11 +114,11 @@ def rotated(
         return np.zeros((0, 0), np.bool_), 0, 0
     out = np.zeros((bottom - top + 1, right - left + 1), np.bool_)
     for i in range(first, last + 1):
-        dy = i - row
+        dy = (i - row) * height
         for j in range(ends[i, 0], ends[i, 1] + 1):
             if values[i, j]:
-                dx = j - column
-                u = math.floor((dx * cos - dy * sin / aspect) + 0.5)
-                v = math.floor((dx * sin * aspect + dy * cos) + 0.5)
+                dx = (j - column) * width
+                u = math.floor((dx * cos - dy * sin) + 0.5)
+                v = math.floor((dx * sin + dy * cos) + 0.5)
                 out[v - top, u - left] = True
     return out, left, top

@@ -22,35 +22,38 @@ DISC, ELLIPSE, RECTANGLE = range(3)
 """Rows of what `shape_fits` returns; a polygon of k corners stands in row k."""
 FEWEST_CORNERS = 3  # of a polygon
 FEWEST_POINTS = 12
+ROUNDED = 0.5 + 1e-6  # a side of a whole number of half steps is not left to its last bit
 NEAR = 1e-4  # of a shape's size, at which a search ends: mean squares grow with its square
 
 
 @compiled_later
 def evenly(corners: Values, step: float) -> tuple[Values, float]:
-    """Return points evenly spread over a polygon's outline about ``step`` apart, and its length."""
+    """Return points spread over a polygon's sides about ``step`` apart, and the outline's length.
+
+    Each side has its own, evenly around its middle: where the walk begins and which way it goes
+    makes no difference.
+    """
     count = corners.shape[0]
+    sizes, parts = np.empty(count), np.empty(count, np.int64)
     length = 0.0
     for k in range(count):
         m = (k + 1) % count
-        length += math.hypot(corners[m, 0] - corners[k, 0], corners[m, 1] - corners[k, 1])
-    n = max(math.ceil(length / step), FEWEST_POINTS)
+        sizes[k] = math.hypot(corners[m, 0] - corners[k, 0], corners[m, 1] - corners[k, 1])
+        length += sizes[k]
+    step = min(step, length / FEWEST_POINTS)
+    n = 0
+    for k in range(count):
+        parts[k] = max(math.floor(sizes[k] / step + ROUNDED), 1)
+        n += parts[k]
     xy = np.empty((n, 2))
-    side, start, end = -1, 0.0, 0.0
-    for i in range(n):
-        at = (i + 0.5) * (length / n)
-        while side < 0 or (at > end and side < count - 1):
-            side += 1
-            m = (side + 1) % count
-            start, end = (
-                end,
-                end
-                + math.hypot(corners[m, 0] - corners[side, 0], corners[m, 1] - corners[side, 1]),
-            )
-        share = (at - start) / (end - start)
-        m = (side + 1) % count
-        for axis in range(2):
-            first = corners[side, axis]
-            xy[i, axis] = first + share * (corners[m, axis] - first)
+    i = 0
+    for k in range(count):
+        m = (k + 1) % count
+        for part in range(parts[k]):
+            share = (part + 0.5) / parts[k]
+            for axis in range(2):
+                xy[i, axis] = corners[k, axis] + share * (corners[m, axis] - corners[k, axis])
+            i += 1
     return xy, length
 
 

@@ -16,6 +16,10 @@ from tactile_graph.wires import Polygon
 Values: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.int64]
 
+NEARER = 1e-5  # share of a triangle's size by which nearer corners go first
+MIRRORED = 1e-3  # of that, between mirror images
+BEYOND = 1.0 + 1e-9  # what is larger by less is as large
+TOLD_APART = 2.0**36  # parts of a size; closer ones are equal but for rounding
 PARALLEL = 0.17  # sine of the angle (10 degrees) below which two sides' lines are not crossed
 
 
@@ -89,20 +93,23 @@ def thinned(xy: Values, kept: Indices, count: int, least: int, tolerance_cm: flo
     """Take out of the first ``count`` of ``kept`` the corners that go; return how many are left.
 
     With a tolerance of 0 or more only corners no further than that from the line between their
-    neighbours go. A tree of the smaller of every two triangles finds the next corner, so that the
-    time grows with the corners as sorting them would.
+    neighbours go. Outlines of cells are full of equal triangles: of these that of the corner
+    nearest to the middle goes, not the first, which depends on how the pad is held. A tree of the
+    smaller of every two triangles finds the next corner, so that the time grows with the corners as
+    sorting them would.
     """
     leaves = 1
     while leaves < count:
         leaves *= 2
     tree = np.empty(2 * leaves)
     ring = np.empty((2, count), np.int64)  # the corner before and the one after; -1 once it is gone
+    outer = _outer(xy, kept, count)
     for k in range(leaves):
         tree[leaves + k] = np.inf
     for k in range(count):
         ring[0, k], ring[1, k] = (k - 1 if k else count - 1), (k + 1) % count
     for k in range(count):
-        tree[leaves + k] = triangle(xy, kept, ring, k, tolerance_cm)
+        tree[leaves + k] = _size(triangle(xy, kept, ring, k, tolerance_cm), outer[k])
     for node in range(leaves - 1, 0, -1):
         tree[node] = min(tree[2 * node], tree[2 * node + 1])
     left = count
@@ -117,7 +124,9 @@ def thinned(xy: Values, kept: Indices, count: int, least: int, tolerance_cm: flo
         for turn in range(3):
             k = before if turn == 0 else after if turn == 1 else gone
             node = leaves + k
-            tree[node] = np.inf if k == gone else triangle(xy, kept, ring, k, tolerance_cm)
+            tree[node] = np.inf
+            if k != gone:
+                tree[node] = _size(triangle(xy, kept, ring, k, tolerance_cm), outer[k])
             while node > 1:
                 node //= 2
                 tree[node] = min(tree[2 * node], tree[2 * node + 1])
@@ -127,6 +136,50 @@ def thinned(xy: Values, kept: Indices, count: int, least: int, tolerance_cm: flo
             kept[n] = kept[k]
             n += 1
     return n
+
+
+@compiled_later
+def _outer(xy: Values, kept: Indices, count: int) -> Values:
+    """Return how far out each kept corner lies, about 0 to 1, however the polygon is held.
+
+    That is its distance from the mean of all corners, those kept being alike where the polygon is
+    not. Between mirror images the furthest corner decides, then the one furthest to its side: of
+    each the first, since others like it are mirror images themselves.
+    """
+    n = xy.shape[0]
+    x = y = 0.0
+    for k in range(n):
+        x += xy[k, 0] / n
+        y += xy[k, 1] / n
+    reach, u, v = 0.0, 0.0, 0.0
+    for k in range(n):
+        dx, dy = xy[k, 0] - x, xy[k, 1] - y
+        if math.hypot(dx, dy) > reach * BEYOND:
+            reach, u, v = math.hypot(dx, dy), dx, dy
+    out = np.zeros(count)
+    if not 0.0 < reach < math.inf:
+        return out
+    u, v = u / reach, v / reach
+    most, side = 0.0, 0.0
+    for k in range(n):
+        across = (xy[k, 1] - y) / reach * u - (xy[k, 0] - x) / reach * v
+        if abs(across) > most * BEYOND + (BEYOND - 1.0):
+            most, side = abs(across), math.copysign(1.0, across)
+    for k in range(count):
+        dx, dy = (xy[kept[k], 0] - x) / reach, (xy[kept[k], 1] - y) / reach
+        along, across = dx * u + dy * v, side * (dy * u - dx * v)
+        out[k] = math.hypot(dx, dy) + MIRRORED * (along + 0.5 * across)
+    return out
+
+
+@compiled_later
+def _size(twice: float, outer: float) -> float:
+    """Return a triangle's size, a little more for outer corners, equal ones to the last bit."""
+    size = twice * (1.0 + NEARER * outer)
+    if not 0.0 < size < math.inf:
+        return twice
+    part, power = math.frexp(size)
+    return math.ldexp(math.floor(part * TOLD_APART + 0.5), power) / TOLD_APART
 
 
 @compiled_later

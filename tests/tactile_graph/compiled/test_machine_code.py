@@ -270,3 +270,18 @@ def test_an_array_of_another_kind_is_refused_by_machine_code_called_directly(fre
     assert [sys.getrefcount(value) for value in wrong] == before
     with pytest.raises(TypeError):
         call(VALUES.astype("f4"))
+
+
+@pytest.mark.slow
+def test_numbers_in_another_byte_order_are_refused_and_never_taken_as_they_lie(fresh: Any) -> None:
+    """numba finds the code of read-only arrays by their type's number, whatever the order."""
+    spread = fresh().spread
+    usual, foreign = VALUES.copy(), VALUES.astype(VALUES.dtype.newbyteorder())
+    usual.setflags(write=False)
+    foreign.setflags(write=False)
+    assert spread.compiled(usual) == 3.0
+    direct = machine_code.entry_point(spread.compiled, (usual,))
+    for call in (spread.compiled, direct):
+        with pytest.raises(TypeError, match=r"float64 .*byte order"):
+            call(foreign)
+    assert direct(usual) == 3.0

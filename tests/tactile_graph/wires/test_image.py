@@ -30,6 +30,20 @@ def test_what_no_machine_code_takes_becomes_double(kind: Any) -> None:
     assert not image.values.flags.writeable
 
 
+@pytest.mark.parametrize("kind", ["i2", "u4", "f4", "f8", "f2"])
+def test_wires_hold_numbers_in_the_machines_byte_order(kind: str) -> None:
+    given = np.array([[1, 2]], dtype=np.dtype(kind).newbyteorder())
+    held = [
+        Image(given).values, Points(given).xy_cm, Polygon(given).xy_cm,
+        ImageStack(given[None]).values[0],
+    ]  # fmt: skip
+    for values in held:
+        assert values.dtype.isnative
+        assert values.dtype == (np.float64 if kind == "f2" else np.dtype(kind))
+        assert values.tolist() == [[1, 2]]
+        assert not values.flags.writeable
+
+
 @pytest.mark.parametrize("kind", [np.int16, np.float32, np.bool_])
 def test_other_numbers_are_taken_as_they_are(kind: Any) -> None:
     values = np.array([[0, 1]], dtype=kind)

@@ -49,6 +49,19 @@ def test_the_shape_comes_with_the_decision():
     assert (got.length_cm, got.breadth_cm) == pytest.approx((13.0, 7.0), abs=0.05)
 
 
+@pytest.mark.slow
+def test_what_a_shape_is_does_not_depend_on_how_the_pad_is_held_nor_on_its_pitch():
+    for seed in range(6):
+        centre = np.random.default_rng(seed).uniform(7.0, 9.0, 2)
+        shape = Rectangle(*centre, 7.0, 4.0 + 0.4 * seed, seed)
+        xy = boundary_scan(covered(shape, (32, 32))).xy_cm
+        usual = shape_decision(Points(xy), cell_cm=1.0)
+        for held, scale in ((xy * [-1.0, 1.0], 1.0), (xy[:, ::-1], 1.0), (0.1 * xy, 0.1)):
+            got = shape_decision(Points(held.copy()), cell_cm=scale)
+            assert got.kind == usual.kind
+            assert got[4:] == pytest.approx(usual[4:], abs=1e-4)
+
+
 def test_a_triangle_is_a_polygon_of_three_corners():
     got = shape_decision(points([[0, 0], [10, 0], [4, 8]]), cell_cm=0.5)
     assert (got.kind, got.corners) == ("polygon", 3)

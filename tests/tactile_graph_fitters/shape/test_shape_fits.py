@@ -43,21 +43,31 @@ def off_sides(corners, xy):
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
-def test_points_are_evenly_spread_along_the_outline(kernel):
+def test_points_are_evenly_spread_along_every_side(kernel):
     square = np.array([[0.0, 0.0], [0.0, 4.0], [4.0, 4.0], [4.0, 0.0]])
     xy, length = getattr(evenly, kernel)(square, 1.0)
     assert length == 16.0
     assert xy[:5].tolist() == [[0.0, 0.5], [0.0, 1.5], [0.0, 2.5], [0.0, 3.5], [0.5, 4.0]]
     assert len(xy) == 16
     assert len(getattr(evenly, kernel)(square, 9.0)[0]) == 12
+    assert len(getattr(evenly, kernel)(square, 8.0 / 3.0)[0]) == 12
+    assert len(getattr(evenly, kernel)(0.1 * square, 0.8 / 3.0)[0]) == 12
     for corners in outlines():
         xy, length = getattr(evenly, kernel)(corners, 0.4)
-        closed = np.vstack([corners, corners[:1]])
-        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
-        at = (np.arange(len(xy)) + 0.5) * along[-1] / len(xy)
-        assert length == pytest.approx(along[-1])
-        for axis in (0, 1):
-            assert xy[:, axis] == pytest.approx(np.interp(at, along, closed[:, axis]))
+        sides = np.roll(corners, -1, axis=0) - corners
+        sizes = np.hypot(*sides.T)
+        expected = [
+            corner + (i + 0.5) / parts * side
+            for corner, side, parts in zip(
+                corners, sides, np.maximum(np.round(sizes / 0.4), 1).astype(int), strict=True
+            )
+            for i in range(parts)
+        ]
+        assert length == pytest.approx(sizes.sum())
+        assert xy == pytest.approx(np.array(expected))
+        turned = np.roll(corners[::-1], 2, axis=0)
+        again = getattr(evenly, kernel)(turned, 0.4)[0]
+        assert np.sort(again, axis=0) == pytest.approx(np.sort(xy, axis=0))
 
 
 @pytest.mark.parametrize("kernel", KERNELS)

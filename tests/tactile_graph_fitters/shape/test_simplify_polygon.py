@@ -5,8 +5,9 @@ import pytest
 
 from helpers_modes import plainly
 from tactile_graph.errors import Degenerate
-from tactile_graph.wires import Polygon
-from tactile_graph_fitters.shape.simplify_polygon import SimplifyPolygon, thinned
+from tactile_graph.wires import Points, Polygon
+from tactile_graph_fitters.shape.simplify_polygon import SimplifyPolygon, _outer, _size, thinned
+from tactile_graph_hull.hull import hull
 
 
 def regular(n, radius=5.0, turn=0.2):
@@ -74,7 +75,8 @@ def test_exactly_one_of_the_two_settings_is_needed(settings, got):
 
 
 def one_after_the_other(xy, least, tolerance):
-    """Take away the corner of the smallest triangle, found anew each time."""
+    """Take away the corner of the smallest triangle, the innermost of equals, found anew."""
+    outer = plainly(_outer)(xy, np.arange(len(xy)), len(xy))
     kept = list(range(len(xy)))
     while len(kept) > least:
         best = (np.inf, -1)
@@ -85,7 +87,7 @@ def one_after_the_other(xy, least, tolerance):
             size = np.hypot(*side)
             if tolerance >= 0 and size > 0 and twice / size > tolerance:
                 continue
-            best = min(best, (twice, k))
+            best = min(best, (_size.loops(twice, outer[b]), k))
         if best[1] < 0:
             break
         del kept[best[1]]
@@ -102,3 +104,28 @@ def test_corners_go_as_if_each_was_looked_for_among_all(tolerance, whole):
             kept = np.arange(n)
             left = plainly(thinned)(xy, kept, n, min(least, n), tolerance)
             assert kept[:left].tolist() == one_after_the_other(xy, min(least, n), tolerance)
+
+
+HELD = {
+    "mirrored": lambda xy: xy * [-1.0, 1.0] + [16.0, 0.0],
+    "half turn": lambda xy: 16.0 - xy,
+    "transposed": lambda xy: xy[:, ::-1],
+    "from another corner": lambda xy: np.roll(xy, 3, axis=0),
+    "finer": lambda xy: 0.13 * xy,
+}
+
+
+@pytest.mark.parametrize("held", HELD.values(), ids=HELD)
+def test_which_of_equal_triangles_goes_does_not_depend_on_how_the_pad_is_held(held):
+    y, x = np.mgrid[:16, :16]
+    for seed in range(8):
+        cx, cy, radius = np.random.default_rng(seed).uniform((7, 7, 5), (8, 8, 6))
+        on = np.hypot(x - cx, y - cy) < radius
+        xy = hull(Points(np.column_stack([x[on], y[on]]) + 0.0)).xy_cm
+        for count in (3, 5):
+            usual, got = (
+                SimplifyPolygon(corners=count, refine=False)(Polygon(corners.copy())).xy_cm
+                for corners in (xy, held(xy))
+            )
+            sizes = [np.sort(np.hypot(*(c - np.roll(c, 1, axis=0)).T)) for c in (held(usual), got)]
+            assert sizes[0] == pytest.approx(sizes[1])
