@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 from threading import get_ident
@@ -124,7 +124,8 @@ class Pipeline(Graph):
             raise UsageError(
                 f"pipeline {self.name!r} has a registry of its own, or steps: not to be pickled"
             )
-        return _unpickled, (self.text, self.file, dict(self.overrides), self.source_override)
+        given = (self.text, self.file, dict(self.overrides), self.source_override)
+        return _unpickled, (*given, self.source is not None)
 
     # -- running -----------------------------------------------------------------------------
 
@@ -394,8 +395,11 @@ class Pipeline(Graph):
         return f"<Pipeline {self.name}: {', '.join(self.nodes)} -> {', '.join(self.outputs)}>"
 
 
-def _unpickled(text: str, file: str, overrides: Overrides, source: SourceOverride) -> Pipeline:
-    return Pipeline.of(resolve_again(parse_graph(text, file), overrides, source))
+def _unpickled(
+    text: str, file: str, overrides: Overrides, source: SourceOverride, with_source: bool = True
+) -> Pipeline:
+    pipeline = Pipeline.of(resolve_again(parse_graph(text, file), overrides, source))
+    return pipeline if with_source else replace(pipeline, source=None)
 
 
 def _asked(only: Sequence[str] | None) -> tuple[str, ...]:

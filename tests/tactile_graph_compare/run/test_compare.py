@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 import re
 from itertools import pairwise
 
@@ -315,3 +316,12 @@ def test_the_graph_can_be_drawn():
     assert {(e.start, e.end, e.kind) for e in c.graph.edges} >= {
         ("frame", "footprint", "data"), ("footprint", "circle", "guard"),
         ("first", "circle@2", "choice")}  # fmt: skip
+
+
+def test_a_comparison_comes_back_from_a_pickle():
+    c = compare(["discs", "next.yaml"], list(load("discs").frames())[:3])
+    again = pickle.loads(pickle.dumps(c))
+    assert again.graph.pipeline.svg() == c.graph.pipeline.svg()
+    assert again.graph.pipeline.outputs == c.graph.pipeline.outputs
+    assert again.variants[0].pipeline.source is None
+    assert again.quantities == c.quantities
