@@ -108,6 +108,15 @@ class Outcomes(Mapping[str, Any]):
     # -- outputs -----------------------------------------------------------------------------
 
     def __getitem__(self, name: str) -> Any:
+        """Return the value of an output or node.
+
+        Raises
+        ------
+        NoResult
+            If it was skipped or failed, with the reason.
+        UsageError
+            If there is no such node.
+        """
         outcome = self.outcome(name)
         if outcome.__class__ in NO_VALUE:
             raise NoResult(name, outcome)
