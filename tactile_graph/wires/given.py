@@ -37,9 +37,8 @@ def as_frame(given: Any, index: int = 0) -> Frame:
     if isinstance(given, str | bytes | os.PathLike):
         raise UsageError(f"a frame is needed, got {_told(given, WITH_SOURCE)}")
     if isinstance(given, list | tuple) and any(isinstance(one, Frame | Image) for one in given):
-        raise UsageError(
-            f"a frame is needed, got a {type(given).__name__} of {len(given)}; stream() takes several"
-        )
+        kind = type(given).__name__
+        raise UsageError(f"a frame is needed, got a {kind} of {len(given)}; stream() takes several")
     return Frame.of(given, index=index)
 
 

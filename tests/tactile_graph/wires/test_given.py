@@ -28,7 +28,7 @@ def test_frames_images_and_arrays_are_taken() -> None:
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        ("my.npy", r"got a path or text, 'my.npy'; with_source\('recording', path='my.npy'\) reads"),
+        ("a.npy", r"got a path or text, 'a.npy'; with_source\('recording', path='a.npy'\) reads"),
         (Path("a b{}.npy"), r"got a path or text, 'a b\{\}.npy'; .*path='a b\{\}.npy'\)"),
         (IMAGE, "got one Image: a list of it is a stream of one"),
         (Frame(IMAGE), "got one Frame"),
