@@ -27,7 +27,7 @@ def facts(rows: Iterable[tuple[str, str]]) -> str:
 
 
 def wide(picture: str, alt: str) -> str:
-    """Return a picture that on a narrow screen is moved along, not made too small to read."""
+    """Return a picture that is moved along where it finds no room, not made too small to read."""
     return f"```{{figure}} {picture}\n:alt: {alt}\n:figclass: wide\n```\n"
 
 

@@ -133,7 +133,7 @@ def _picture(entry: Entry) -> str:
     alt = f"One frame before and after {entry.name}"
     grid = f"{seen.rows} × {seen.columns} cells"
     note = f" {seen.note}" if seen.note else ""
-    head = f"```{{figure}} {entry.name}-shown.svg\n:alt: {alt}\n\n"
+    head = f"```{{figure}} {entry.name}-shown.svg\n:alt: {alt}\n:figclass: wide\n\n"
     if not entry.cost:
         return f"{head}What it gives: frame {seen.frame}, {where}.\n```\n"
     return (

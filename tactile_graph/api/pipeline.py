@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
-from tactile_graph.errors import PipelineError, Problem, UsageError, one_of
+from tactile_graph.errors import PipelineError, Problem, UsageError, one_of, shown
 from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.load import load_graph, parse_graph, resolve_again
 from tactile_graph.pipeline.resolve import SourceOverride
@@ -17,6 +17,7 @@ from tactile_graph.pipeline.scope import Overrides
 from tactile_graph.plugins.registry import Registry, installed, installed_and
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.given import as_frame, as_frames
 
 if TYPE_CHECKING:
     import networkx
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from tactile_graph.engine.runner import Runner
     from tactile_graph.live.live_stream import LiveStream
     from tactile_graph.wires.frame_stack import FrameStack
+    from tactile_graph.wires.image import Image
 
 Steps = Mapping[str, Callable[..., Any]]
 
@@ -56,16 +58,30 @@ def load(
     PipelineError
         With every problem of the file.
     UsageError
-        If there is no such pipeline or file, or both ``registry`` and ``steps`` are given.
+        If there is no such pipeline or file, both ``registry`` and ``steps`` are given, or steps
+        are no mapping of names to functions.
     """
     return Pipeline.of(load_graph(name, _registry(registry, steps)))
 
 
 def _registry(registry: Registry | None, steps: Steps | None) -> Registry | None:
+    if registry is not None and not isinstance(registry, Registry):
+        got = type(registry).__name__
+        raise UsageError(f"registry must be a Registry, got {got}; steps={{…}} takes functions")
     if steps is None:
         return registry
     if registry is not None:
         raise UsageError("steps: a registry is given, which has its own; give one of the two")
+    if not isinstance(steps, Mapping):
+        name = getattr(steps, "__name__", "")
+        hint = f"; give {{{name!r}: {name}}}" if name.isidentifier() else ""
+        got = type(steps).__name__
+        raise UsageError(f"steps must be a mapping of names to functions, got {got}{hint}")
+    for name, step in steps.items():
+        if not isinstance(name, str):
+            raise UsageError(f"steps: names are texts, got {shown(name)}")
+        if not (callable(step) or isinstance(step, str)):
+            raise UsageError(f"steps: {name!r} is {shown(step)}, no function")
     return installed_and(steps)
 
 
@@ -92,7 +108,7 @@ def loads(
     PipelineError
         With every problem of the text.
     UsageError
-        If both ``registry`` and ``steps`` are given.
+        If both ``registry`` and ``steps`` are given, or steps are no mapping of names to functions.
     """
     return Pipeline.of(parse_graph(text, file, _registry(registry, steps)))
 
@@ -124,18 +140,22 @@ class Pipeline(Graph):
             raise UsageError(
                 f"pipeline {self.name!r} has a registry of its own, or steps: not to be pickled"
             )
-        return _unpickled, (self.text, self.file, dict(self.overrides), self.source_override)
+        given = (self.text, self.file, dict(self.overrides), self.source_override)
+        return _unpickled, (*given, self.source is not None)
 
     # -- running -----------------------------------------------------------------------------
 
     def run(
-        self, frame: Frame | NDArray[np.generic], only: Sequence[str] | None = None, seed: int = 0
+        self,
+        frame: Frame | Image | NDArray[np.generic],
+        only: Sequence[str] | None = None,
+        seed: int = 0,
     ) -> Result:
         """Return the result for one frame; stateful steps start anew.
 
         Parameters
         ----------
-        frame : Frame or ndarray, shape (rows, columns)
+        frame : Frame, Image or ndarray, shape (rows, columns)
             A bare array becomes a frame of pitch 1 cm and quantity ``raw``.
         only : sequence of str, optional
             Nodes or ``node.field`` to ask for instead of the pipeline's outputs.
@@ -146,15 +166,17 @@ class Pipeline(Graph):
         ------
         RuleError
             If the frame's quantity, shape or pitch breaks a rule of a step.
+        UsageError
+            If it is a path, or several frames.
         """
-        result = self._runner(_asked(only), seed)(_as_frame(frame))
+        result = self._runner(_asked(only), seed)(as_frame(frame))
         if self.promises.waiting:
             self.promises.check(result)
         return result
 
     def stream(
         self,
-        frames: Iterable[Frame | NDArray[np.generic]] | None = None,
+        frames: Iterable[Frame | Image | NDArray[np.generic]] | None = None,
         only: Sequence[str] | None = None,
         seed: int = 0,
     ) -> Results:
@@ -164,16 +186,21 @@ class Pipeline(Graph):
 
         Parameters
         ----------
-        frames : iterable of Frame or ndarray, optional
+        frames : iterable of Frame, Image or ndarray, optional
             The pipeline's own source if not given. Bare arrays are numbered as they come.
         only, seed
             As in `run`.
+
+        Raises
+        ------
+        UsageError
+            If frames are a path, or one frame by itself.
         """
         from tactile_graph.api.results import Results
 
         runner = self.runner(only, seed)
         asked = tuple(runner.plan.asked)
-        given = self.frames(seed) if frames is None else frames
+        given = self.frames(seed) if frames is None else as_frames(frames)
         return Results(self, asked, self.results(given, runner))
 
     def live(
@@ -214,11 +241,11 @@ class Pipeline(Graph):
         return LiveStream(run, unread)
 
     def results(
-        self, frames: Iterable[Frame | NDArray[np.generic]], runner: Runner[Result]
+        self, frames: Iterable[Frame | Image | NDArray[np.generic]], runner: Runner[Result]
     ) -> Iterator[Result]:
         """Yield the results of the frames, each as it comes, by a runner of this pipeline."""
         for index, frame in enumerate(frames):
-            result = runner(_as_frame(frame, index))
+            result = runner(frame if frame.__class__ is Frame else as_frame(frame, index))
             if self.promises.waiting:
                 self.promises.check(result)
             yield result
@@ -394,14 +421,13 @@ class Pipeline(Graph):
         return f"<Pipeline {self.name}: {', '.join(self.nodes)} -> {', '.join(self.outputs)}>"
 
 
-def _unpickled(text: str, file: str, overrides: Overrides, source: SourceOverride) -> Pipeline:
-    return Pipeline.of(resolve_again(parse_graph(text, file), overrides, source))
+def _unpickled(
+    text: str, file: str, overrides: Overrides, source: SourceOverride, with_source: bool = True
+) -> Pipeline:
+    pipeline = Pipeline.of(resolve_again(parse_graph(text, file), overrides, source))
+    return pipeline if with_source else replace(pipeline, source=None)
 
 
 def _asked(only: Sequence[str] | None) -> tuple[str, ...]:
     """Return the names asked for; one by itself is no sequence of letters."""
     return (only,) if isinstance(only, str) else tuple(only or ())
-
-
-def _as_frame(frame: Any, index: int = 0) -> Frame:
-    return frame if frame.__class__ is Frame else Frame.of(frame, index=index)

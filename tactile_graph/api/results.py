@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from tactile_graph.api.result import Result
 from tactile_graph.errors import UsageError
 from tactile_graph.pipeline.graph import Graph
@@ -30,9 +32,24 @@ class Results(Iterator[Result]):
         self._pipeline = pipeline
         self._asked = asked
         self._results = results
+        self._taken = False
+        self._broken = ""
 
     def __next__(self) -> Result:
-        return next(self._results)
+        try:
+            result = next(self._results)
+        except StopIteration:
+            if self._broken:
+                raise UsageError(
+                    f"the stream ended with {self._broken}, and has no further frames; "
+                    "pipeline.stream() makes a new one"
+                ) from None
+            raise
+        except BaseException as error:  # whatever raised is over: it would seem to have ended well
+            self._broken = type(error).__name__
+            raise
+        self._taken = True
+        return result
 
     def to_pandas(self, *, long: bool = False) -> pd.DataFrame:
         """Run the frames that are left, and return their results as a table.
@@ -46,12 +63,12 @@ class Results(Iterator[Result]):
         -------
         pandas.DataFrame
             ``attrs["units"]`` holds the unit of each column of numbers: ``1`` for bare ones, ""
-            where nobody knows it or frames differ in it.
+            where nobody knows it or frames differ in it. Missing numbers are NaN.
 
         Raises
         ------
         UsageError
-            If pandas is not installed.
+            If pandas is not installed, or no frames are left of those there were.
         """
         try:
             import pandas as pd
@@ -62,9 +79,20 @@ class Results(Iterator[Result]):
         table = make_table(self._pipeline, self._asked, long)
         rows: list[dict[str, Any]] = []
         quantities: set[str] = set()
+        taken_before = self._taken
         for result in self:
             quantities.add(result.frame.image.quantity)
             rows += table.rows(result)
+        if taken_before and not quantities:
+            raise UsageError(
+                "no frames are left: all results of the stream were taken before; "
+                "pipeline.stream() makes a new one"
+            )
         found = pd.DataFrame(rows, columns=[column.key for column in table.columns])
-        found.attrs["units"] = units_of(table, quantities)
+        units = units_of(table, quantities)
+        for column in table.columns:
+            if column.key in units and found[column.key].isna().all():  # pandas cannot know: object
+                whole = not rows and issubclass(column.kind, int | np.integer)
+                found[column.key] = found[column.key].astype(int if whole else float)
+        found.attrs["units"] = units
         return found

@@ -84,8 +84,7 @@ class Guard:
 def _made_again(
     text: str, refs: tuple[Ref, ...], meaning: str, groups: tuple[tuple[int, ...], ...]
 ) -> Guard:
-    tree = ast.parse(meaning, mode="eval").body
-    return Guard(text, refs, _function(tree, len(refs), groups), meaning, groups)
+    return Guard(text, refs, _function(meaning, len(refs), groups), meaning, groups)
 
 
 def _settled(node: ast.expr, values: Mapping[str, str]) -> bool | None:
@@ -170,7 +169,7 @@ def compile_condition(
         _check_depth(tree)
         meaning = ast.unparse(tree)
         refs, groups = tuple(compiler.refs), tuple(compiler.groups)
-        function = _function(tree, len(refs), groups)
+        function = _function(meaning, len(refs), groups)
         return Guard(" ".join(text.split()), refs, function, meaning, groups)
     except (RecursionError, MemoryError):
         raise ConditionError(f"nested deeper than {DEEPEST} levels") from None
@@ -184,9 +183,9 @@ def _check_depth(tree: ast.AST) -> None:
         raise ConditionError(f"nested deeper than {DEEPEST} levels")
 
 
-def _function(tree: ast.expr, n_refs: int, groups: Sequence[tuple[int, ...]]) -> Callable[..., Any]:
+def _function(meaning: str, n_refs: int, groups: Sequence[tuple[int, ...]]) -> Callable[..., Any]:
     arguments = [ast.arg(f"v{i}") for i in range(n_refs)]
-    rows = spelled_out(tree, groups)
+    rows = spelled_out(meaning, groups)
     body = ast.Lambda(ast.arguments([], arguments, None, [], [], None, []), rows)
     code = compile(ast.fix_missing_locations(ast.Expression(body)), "<condition>", "eval")
     function: Callable[..., Any] = eval(code, {"__builtins__": {}, "zip": zip, **FUNCTIONS})

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
@@ -67,12 +66,14 @@ def resolve_of_items(
     return None
 
 
-def spelled_out(tree: ast.expr, groups: Iterable[tuple[int, ...]]) -> ast.expr:
+def spelled_out(meaning: str, groups: Iterable[tuple[int, ...]]) -> ast.expr:
     """Return a condition in which each ``any(v0 > 1)`` goes over the rows of what it reads.
 
     ``groups`` holds the values that go side by side, for each such call in turn.
     """
-    return _Rows(groups).visit(copy.deepcopy(tree))  # type: ignore[no-any-return]
+    # Parsed, not copied: all trees share their Load(), and what others hang onto it comes along.
+    tree = ast.parse(meaning, mode="eval").body
+    return _Rows(groups).visit(tree)  # type: ignore[no-any-return]
 
 
 class _Rows(ast.NodeTransformer):

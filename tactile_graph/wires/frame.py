@@ -107,9 +107,9 @@ class Frame:
         Raises
         ------
         ValueError
-            If values are no real numbers or have no rows and columns, the pitch is not within
-            1e-6 to 1e6 cm, the origin not within 1e9 cm, a time not finite, the index below 0, or
-            nobody knows the quantity.
+            If values are no real numbers, an image, or have no rows and columns, the pitch is not
+            within 1e-6 to 1e6 cm, the origin not within 1e9 cm, a time not finite, the index below
+            0, or nobody knows the quantity.
         """
         copy = _real(values)
         if copy.ndim != 2 or 0 in copy.shape:
@@ -157,6 +157,10 @@ class Frame:
 
 def _real(values: NDArray[Any]) -> NDArray[np.float64]:
     """Return a copy as float64, NaN in masked cells; errors as of `Frame.of`."""
+    if isinstance(values, Image):
+        raise ValueError("a frame takes bare values, got an Image; write Frame(image)")
+    if isinstance(values, Mask):
+        raise ValueError("a frame takes bare values, got a Mask; take its .values")
     given = np.asarray(values)
     if given.dtype.kind not in "biufO" or (given.dtype.kind == "O" and np.iscomplexobj(given)):
         raise ValueError(f"a frame takes real numbers, got {given.dtype.name}")

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from tactile_graph.quantities import QuantityName, unit_of
 from tactile_graph.wires.native import NATIVE, native
@@ -167,6 +167,24 @@ class Image(_Gridded):
         """Return the values with ``fill`` in the invalid cells; no copy if all are good."""
         return self.values if self.valid is None else np.where(self.valid, self.values, fill)
 
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        """Return the values for NumPy, NaN in the invalid cells.
+
+        Raises
+        ------
+        ValueError
+            If cells are invalid, and no copy may be made or the type has no NaN.
+        """
+        values = self.filled(math.nan)
+        if self.valid is not None:
+            if copy is False:
+                raise ValueError("an image with invalid cells needs a copy, which has NaN in them")
+            if not self.valid.all() and dtype is not None and np.dtype(dtype).kind not in "fcO":
+                raise ValueError(
+                    f"cells are invalid, and {np.dtype(dtype)} has no NaN; filled() has 0 in them"
+                )
+        return np.array(values, dtype=dtype, copy=copy)
+
     @property
     def unit(self) -> str:
         """Unit of the values; the quantity itself where that is its own unit."""
@@ -269,6 +287,10 @@ class Mask(_Gridded):
             return len(self._words), self._columns
         rows, columns = cells.shape
         return rows, columns
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        """Return the values for NumPy."""
+        return np.array(self.values, dtype=dtype, copy=copy)
 
     @property
     def count(self) -> int:

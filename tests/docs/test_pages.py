@@ -377,3 +377,11 @@ def test_the_comparison_on_the_page_of_learned_pads_comes_out_as_it_says(
     )
     assert len(learned) == 2
     assert all(b < 0.5 * a for a, b in zip(shipped, learned, strict=True))
+
+
+@pytest.mark.parametrize(
+    "name", ["__getitem__", "get", "outcome", "times_us", "Results", "to_pandas"]
+)
+def test_the_page_for_programs_tells_what_a_stream_gives(name: str) -> None:
+    told = re.findall(r"^ *\.\. auto\w+:: (?:\S+\.)?(\w+)$", (DOCS / "api.md").read_text(), re.M)
+    assert name in told

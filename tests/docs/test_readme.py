@@ -40,6 +40,12 @@ def test_the_first_command_sets_up_and_locates_the_bundled_discs_and_draws_them(
     assert (tmp_path / "strip.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_commands_without_a_folder_stand_below_the_line_that_activates_theirs() -> None:
+    text = README.read_text(encoding="utf-8")
+    bare = min(found.start() for found in re.finditer(r"^(tactile-graph|pip|python) ", text, re.M))
+    assert -1 < text.find("`. .venv/bin/activate`") < bare
+
+
 def test_the_second_command_sets_up_and_runs_the_tests() -> None:
     steps = block("sh test").strip().split(" && ")
     assert steps == [

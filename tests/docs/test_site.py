@@ -96,3 +96,22 @@ def test_search_finds_pages_from_the_disk_alone(words: str, found: str, tmp_path
     _, _, results = done.stdout.partition('id="search-results"')
     assert re.search(r"found \d+ pages? matching|Search finished", results)
     assert found in results
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="there is no chromium")
+@pytest.mark.parametrize("width_px", [360, 768, 1400])
+def test_drawings_are_moved_along_not_made_too_small_to_read(width_px: int) -> None:
+    """Their smallest letters are of 10 px at full size."""
+    play = pytest.importorskip("playwright.sync_api")
+    drawn = "[...document.querySelectorAll('main img')].filter(i => i.src.endsWith('.svg'))"
+    scale = f"Math.min(...{drawn}.map(i => i.getBoundingClientRect().width / i.naturalWidth))"
+    with play.sync_playwright() as played:
+        browser = played.chromium.launch(
+            executable_path=shutil.which("chromium"), args=["--no-sandbox", "--disable-gpu"]
+        )
+        tab = browser.new_page(viewport={"width": width_px, "height": 900})
+        for name in ("pipelines/identify-locate", "pipelines/circle-3", "steps/filters/erode"):
+            tab.goto((SITE / "catalogue" / f"{name}.html").resolve().as_uri())
+            assert 0.9 < tab.evaluate(scale) < 2, name
+            assert tab.evaluate("document.documentElement.scrollWidth") <= width_px, name
+        browser.close()

@@ -13,11 +13,13 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tactile_graph import Pipeline
+from tactile_graph import Image, Pipeline
 from tactile_graph.inspect import NO_VALUE, as_data
 from tactile_graph.many import Portion, Reading
 from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.given import as_frames
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.records.scores import Difference
 from tactile_graph_compare.run.frame_choice import FrameChooser
@@ -93,7 +95,7 @@ class Audit:
 
 def audit(
     pipeline: Pipeline,
-    frames: Iterable[Frame] | None = None,
+    frames: Iterable[Frame | Image | NDArray[np.generic]] | None = None,
     *,
     asked: tuple[str, ...] = (),
     sample: float = 1.0,
@@ -104,7 +106,7 @@ def audit(
     Parameters
     ----------
     pipeline : Pipeline
-    frames : iterable of Frame, optional
+    frames : iterable of Frame, Image or ndarray, optional
         The pipeline's own source if not given.
     asked, sample, seed
         As in `Auditor`.
@@ -121,6 +123,7 @@ def audit(
     if frames is None:
         frames = pipeline.frames(seed)
     else:
+        frames = as_frames(frames)
         pipeline = replace(pipeline, source=None)
     auditor = Auditor(pipeline, asked, sample, seed)
     for frame in frames:

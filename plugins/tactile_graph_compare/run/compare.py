@@ -7,11 +7,15 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from tactile_graph import Pipeline
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph import Image, Pipeline
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.given import as_frames
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.run.frame_choice import FrameChooser
 from tactile_graph_compare.run.session import Session
@@ -27,10 +31,13 @@ from tactile_graph_compare.variants.prepare import PreparedVariant, prepare, ref
 from tactile_graph_compare.variants.request import VariantRequest, parse_request
 from tactile_graph_compare.variants.sweeps import Sweep
 
+Given = str | Path | Pipeline | VariantRequest
+READING = "source='recording', source_settings={{'path': {path!r}}}"
+
 
 def compare(
-    variants: Sequence[str | Path | Pipeline | VariantRequest],
-    frames: Iterable[Frame] | None = None,
+    variants: Sequence[Given] | Given,
+    frames: Iterable[Frame | Image | NDArray[np.generic]] | None = None,
     *,
     source: str | None = None,
     source_settings: Mapping[str, Any] | None = None,
@@ -48,10 +55,10 @@ def compare(
 
     Parameters
     ----------
-    variants : sequence
+    variants : sequence, or one by itself
         Pipelines by name, file or themselves, or texts as ``"NAME --set node.setting=value"``.
-    frames : iterable of Frame, optional
-        Instead of a source.
+    frames : iterable of Frame, Image or ndarray, optional
+        Instead of a source. Bare arrays are of pitch 1 cm and quantity ``raw``.
     source, source_settings : str and mapping, optional
         Source step and its settings; that of the first variant that declares one if not given.
     n_frames : int, optional
@@ -82,7 +89,7 @@ def compare(
         If a frame breaks a rule of some variant.
     """
     found = registry or installed()
-    requests = [_request(v, found) for v in variants]
+    requests = [_request(v, found) for v in _each(variants)]
     swept = [Sweep(name, tuple(values)) for name, values in (sweeps or {}).items()]
     prepared = prepare(requests, found, settings, swept, crossed, lineage)
     report, notes = Report(), list[str]()
@@ -92,9 +99,10 @@ def compare(
     elif source is not None:
         raise UsageError("give frames or a source, not both")
     else:
+        frames = as_frames(frames, READING)
         prepared = without_source(prepared)
     session = Session(prepared, seed, chooser, reference and referred(prepared, reference))
-    for frame in session.warmed(islice(iter(frames), n_frames)):
+    for frame in session.warmed(islice(frames, n_frames)):
         session.add(frame)
     return summarise(session, report, notes=notes)
 
@@ -120,7 +128,16 @@ def _on_one_source(
     return on_source(prepared, source, given), notes
 
 
-def _request(variant: str | Path | Pipeline | VariantRequest, registry: Registry) -> VariantRequest:
+def _each(variants: Sequence[Given] | Given) -> Sequence[Given]:
+    """Return the variants; one by itself is no sequence of letters."""
+    if isinstance(variants, str | Path | Pipeline | VariantRequest):
+        return [variants]
+    if not isinstance(variants, Iterable):
+        raise UsageError(f"variants must be a list of pipelines, got {type(variants).__name__}")
+    return variants
+
+
+def _request(variant: Given, registry: Registry) -> VariantRequest:
     if isinstance(variant, VariantRequest):
         return variant
     return parse_request(variant, registry) if isinstance(variant, str) else VariantRequest(variant)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -69,6 +69,30 @@ class Merged:
         return replace(self.pipeline, nodes=nodes)
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class _MergedPipeline(Pipeline):
+    """A pipeline that no text declares; pickled by what it was merged from.
+
+    Parameters
+    ----------
+    parts : tuple of (Pipeline, tuple of str)
+        Each variant, and what is asked of it.
+    """
+
+    parts: tuple[tuple[Pipeline, tuple[str, ...]], ...] = ()
+
+    def __reduce__(self) -> tuple[Callable[..., Pipeline], tuple[Any, ...]]:
+        """Pickle the variants, which another process merges again."""
+        return _merged_again, (self.parts, tuple(self.nodes))
+
+
+def _merged_again(
+    parts: Sequence[tuple[Pipeline, tuple[str, ...]]], order: Sequence[str]
+) -> Pipeline:
+    pipeline = merge([p for p, _ in parts], [asked for _, asked in parts]).pipeline
+    return replace(pipeline, nodes={name: pipeline.nodes[name] for name in order})
+
+
 def merge(pipelines: Sequence[Pipeline], asked: Sequence[Sequence[str]]) -> Merged:
     """Return the graph that computes for every pipeline what is asked of it.
 
@@ -94,7 +118,8 @@ def merge(pipelines: Sequence[Pipeline], asked: Sequence[Sequence[str]]) -> Merg
         merger.add(number, pipeline, names)
         for number, (pipeline, names) in enumerate(zip(pipelines, asked, strict=True), 1)
     )
-    return Merged(_pipeline(pipelines, merger.nodes, merger.outputs), members)
+    parts = tuple((p, tuple(names)) for p, names in zip(pipelines, asked, strict=True))
+    return Merged(_pipeline(parts, merger.nodes, merger.outputs), members)
 
 
 class _Merger:
@@ -135,11 +160,13 @@ class _Merger:
 
 
 def _pipeline(
-    pipelines: Sequence[Pipeline], nodes: dict[str, Node], outputs: dict[str, Ref]
+    parts: tuple[tuple[Pipeline, tuple[str, ...]], ...],
+    nodes: dict[str, Node],
+    outputs: dict[str, Ref],
 ) -> Pipeline:
-    first = pipelines[0]
-    return Pipeline(
-        name=" + ".join(dict.fromkeys(p.name for p in pipelines)),
+    first = parts[0][0]
+    return _MergedPipeline(
+        name=" + ".join(dict.fromkeys(p.name for p, _ in parts)),
         about="",
         evolves="",
         source=first.source,
@@ -148,6 +175,7 @@ def _pipeline(
         file="",
         text="nodes: {}\n",  # no file spells anything out; pictures look here for what one did
         registry=first.registry,
+        parts=parts,
     )
 
 

@@ -42,7 +42,8 @@ class NoResult(TactileGraphError):  # noqa: N818 -- it reads as what it says
         outcome = self.outcome
         word = "failed" if isinstance(outcome, Failed) else "was skipped"
         at = f" at {outcome.origin!r}" if outcome.origin and outcome.origin != self.name else ""
-        return f"{self.name!r} {word}{at}: {outcome.reason}"
+        found = isinstance(outcome, Failed) and outcome.kind == "error" and outcome.where
+        return f"{self.name!r} {word}{at}: {outcome.reason}" + (f" (at {found})" if found else "")
 
 
 class Explained(NamedTuple):
@@ -107,6 +108,15 @@ class Outcomes(Mapping[str, Any]):
     # -- outputs -----------------------------------------------------------------------------
 
     def __getitem__(self, name: str) -> Any:
+        """Return the value of an output or node.
+
+        Raises
+        ------
+        NoResult
+            If it was skipped or failed, with the reason.
+        UsageError
+            If there is no such node.
+        """
         outcome = self.outcome(name)
         if outcome.__class__ in NO_VALUE:
             raise NoResult(name, outcome)

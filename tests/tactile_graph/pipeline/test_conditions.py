@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import pickle
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
@@ -325,3 +328,25 @@ def test_a_guard_is_pickled_and_holds_as_before(text: str) -> None:
         values = {"items.size": (size,), "items.kind": ("disc",), "flags": (flag,), "a": a, "b": b}
         given = [values[ref.spelled] for ref in guard.refs]
         assert again.function(*given) == guard.function(*given)
+
+
+@contextmanager
+def marked(node: ast.AST) -> Iterator[None]:
+    """Hang what nobody can copy onto a node, as IPython's tracebacks do with whole files."""
+
+    class Parent:
+        def __reduce__(self) -> str:
+            raise AssertionError("the trees of others were copied")
+
+    vars(node)["parent"] = Parent()
+    try:
+        yield
+    finally:
+        del vars(node)["parent"]
+
+
+def test_what_others_hang_onto_shared_nodes_of_trees_is_not_copied() -> None:
+    with marked(ast.parse("a", mode="eval").body.ctx):  # type: ignore[attr-defined]
+        guard = compile_condition("count(items.size > 2) == 1 and b < 1", TYPES)
+        again = pickle.loads(pickle.dumps(guard))
+    assert guard.function((3.0, 1.0), 0.5) is again.function((3.0, 1.0), 0.5) is True

@@ -701,3 +701,21 @@ def test_a_script_gives_steps_of_its_own_by_name(reg: Any) -> None:
         pickle.dumps(p)
     with pytest.raises(UsageError, match="steps: a registry is given"):
         loads(text, registry=reg, steps={"mine": mine})
+
+
+@pytest.mark.parametrize(
+    ("steps", "told"),
+    [
+        ([len], "steps must be a mapping of names to functions, got list"),
+        (len, "steps must be a mapping of names to functions, got .*; give {'len': len}"),
+        ({"x": 3}, "steps: 'x' is 3, no function"),
+        ({"x": None}, "steps: 'x' is None, no function"),
+        ({3: len}, "steps: names are texts, got 3"),
+    ],
+)
+def test_steps_that_are_no_functions_by_name_are_refused(steps: Any, told: str) -> None:
+    text = "pipeline: p\nnodes: {a: {step: x, in: frame}}\noutputs: [a]"
+    with pytest.raises(UsageError, match=told):
+        loads(text, steps=steps)
+    with pytest.raises(UsageError, match="registry must be a Registry, got dict; steps="):
+        loads(text, "p.yaml", {"x": len})  # type: ignore[arg-type]

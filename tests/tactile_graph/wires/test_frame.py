@@ -86,6 +86,14 @@ def test_what_is_no_real_number_is_refused(values: Any, got: str) -> None:
         Frame.of(values)
 
 
+def test_an_image_has_a_pitch_of_its_own_and_is_no_bare_values() -> None:
+    image = Image(np.ones((2, 2)), (0.5, 0.5))
+    with pytest.raises(ValueError, match=r"bare values, got an Image; write Frame\(image\)"):
+        Frame.of(image)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"bare values, got a Mask; take its \.values"):
+        Frame.of(image.mask(np.ones((2, 2), bool)))  # type: ignore[arg-type]
+
+
 def test_places_and_times_that_are_not_finite_are_refused() -> None:
     for x in (np.nan, 1e300):
         with pytest.raises(ValueError, match="an origin must be within 1e\\+09 cm"):

@@ -111,3 +111,19 @@ def test_masked_cells_of_an_image_are_invalid_and_those_of_a_mask_off() -> None:
     assert type(stack.values) is np.ndarray
     assert stack.valid is not None
     assert stack[1].total == 8.0
+
+
+def test_numpy_sees_values_with_nan_in_invalid_cells() -> None:
+    values, valid = np.arange(6.0).reshape(2, 3), np.ones((2, 3), bool)
+    good = Image(values)
+    assert np.asarray(good) is good.values
+    assert np.array(good).flags.writeable
+    assert np.asarray(good, dtype=np.float32).dtype == np.float32
+    np.testing.assert_array_equal(np.asarray(good.mask(values > 1.0)), values > 1.0)
+    valid[0, 1] = False
+    holey = Image(values, valid=valid)
+    np.testing.assert_array_equal(np.asarray(holey), [[0.0, np.nan, 2.0], [3.0, 4.0, 5.0]])
+    with pytest.raises(ValueError, match=r"cells are invalid, and int64 has no NaN; filled\(\)"):
+        np.asarray(holey, dtype=np.int64)
+    with pytest.raises(ValueError, match="an image with invalid cells needs a copy"):
+        np.array(holey, copy=False)

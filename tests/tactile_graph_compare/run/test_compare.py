@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 import re
 from itertools import pairwise
 
@@ -282,6 +283,17 @@ def test_provenance_tells_which_frames_of_the_source_there_were():
     assert both(n_frames=4).provenance["frames"] == {"from": 0, "to": 4}
 
 
+def test_images_and_arrays_are_frames_and_one_variant_may_stand_alone():
+    frames = [f.image for f in load("discs").frames()][:2]
+    assert [v.label for v in compare("discs", frames).variants] == ["discs"]
+    with pytest.raises(RuleError, match="takes volt at port 'image', got a frame of raw"):
+        compare(load("discs"), np.ones((2, 4, 4)))
+    with pytest.raises(UsageError, match=r"got a path or text, 'my\.npy'; source='recording', "):
+        compare(["discs"], "my.npy")
+    with pytest.raises(UsageError, match="variants must be a list of pipelines, got int"):
+        compare(3)
+
+
 def test_frames_and_a_source_exclude_each_other():
     with pytest.raises(UsageError, match="give frames or a source, not both"):
         compare(["discs"], [], source="made")
@@ -315,3 +327,12 @@ def test_the_graph_can_be_drawn():
     assert {(e.start, e.end, e.kind) for e in c.graph.edges} >= {
         ("frame", "footprint", "data"), ("footprint", "circle", "guard"),
         ("first", "circle@2", "choice")}  # fmt: skip
+
+
+def test_a_comparison_comes_back_from_a_pickle():
+    c = compare(["discs", "next.yaml"], list(load("discs").frames())[:3])
+    again = pickle.loads(pickle.dumps(c))
+    assert again.graph.pipeline.svg() == c.graph.pipeline.svg()
+    assert again.graph.pipeline.outputs == c.graph.pipeline.outputs
+    assert again.variants[0].pipeline.source is None
+    assert again.quantities == c.quantities

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -163,6 +164,39 @@ def test_results_become_a_pandas_table_of_either_form() -> None:
     assert len(long) == 7 + 3
     assert long.attrs["units"]["radius_cm"] == "cm"
     assert np.isnan(long["radius_cm"][0])
+
+
+@pytest.mark.parametrize("long", [False, True])
+def test_numbers_that_are_all_missing_are_numbers_in_pandas(long: bool) -> None:
+    pytest.importorskip("pandas")
+    pipeline = loads(NODES, "p.yaml", registry({"found": found, "smaller": smaller}))
+    timeless = [np.zeros((2, 2))]
+    assert pipeline.stream(timeless).to_pandas(long=long)["time_s"].dtype == float
+    none = pipeline.stream([]).to_pandas(long=long)
+    assert [none[c].dtype for c in ("frame", "time_s")] == [int, float]
+    kinds = pipeline.stream(timeless).to_pandas(long=long).dtypes
+    assert all(kinds[name].kind in "if" for name in none.attrs["units"])
+
+
+def test_a_stream_whose_frames_were_taken_says_so() -> None:
+    pytest.importorskip("pandas")
+    pipeline = loads(NODES, "p.yaml", registry({"found": found, "smaller": smaller}))
+    stream = pipeline.stream([frame(1), frame(2)])
+    next(stream)
+    assert len(stream.to_pandas()) == 1
+    assert list(stream) == []
+    with pytest.raises(UsageError, match="no frames are left: all results of the stream were"):
+        stream.to_pandas()
+
+    def interrupted() -> Iterator[Frame]:
+        yield frame(1)
+        raise KeyboardInterrupt
+
+    stream = pipeline.stream(interrupted())
+    with pytest.raises(KeyboardInterrupt):
+        list(stream)
+    with pytest.raises(UsageError, match="the stream ended with KeyboardInterrupt"):
+        stream.to_pandas()
 
 
 def test_without_pandas_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
