@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import ctypes
 import io
-import os
-import shutil
-import sys
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
@@ -166,29 +162,3 @@ class Zarr:
 
     def close(self) -> None:
         """Do nothing: every chunk is a file of its own."""
-
-
-def put_in_place(part: Path, target: Path) -> None:
-    """Give a file, or a folder, its name, in place of what is there.
-
-    A folder is exchanged with the older one at once where the system can do that; elsewhere there
-    is none of that name between two renames.
-    """
-    if not target.is_dir():
-        os.replace(part, target)
-    elif _exchanged(part, target):
-        shutil.rmtree(part)
-    else:
-        old = target.with_name(f"{part.name}.old")  # a folder that is not empty is not replaced
-        target.rename(old)
-        part.rename(target)
-        shutil.rmtree(old)
-
-
-def _exchanged(one: Path, other: Path) -> bool:
-    """Return whether two names changed places, which Linux alone offers, not on every disc."""
-    exchange = getattr(ctypes.CDLL(None), "renameat2", None) if sys.platform == "linux" else None
-    if exchange is None:
-        return False
-    here, flag = -100, 2  # AT_FDCWD and RENAME_EXCHANGE of renameat2(2)
-    return bool(exchange(here, os.fsencode(one), here, os.fsencode(other), flag) == 0)
