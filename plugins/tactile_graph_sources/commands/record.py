@@ -203,10 +203,10 @@ def _check_target(target: Path) -> None:
 
 
 def _until(frames: Iterator[Frame], seconds: float | None) -> Iterator[Frame]:
-    end = None if seconds is None else time.monotonic() + seconds
+    end = None if seconds is None else time.perf_counter() + seconds
     for frame in frames:
         yield frame
-        if end is not None and time.monotonic() > end:
+        if end is not None and time.perf_counter() > end:
             return
 
 
@@ -216,12 +216,12 @@ def _keep(frames: Iterator[Frame], store: StoreWriter, again: Callable[[], None]
     ``again`` is called after each and raises a signal that was swallowed on its way here.
     """
     shown = sys.stderr.isatty()
-    since, n = time.monotonic(), 0
+    since, n = time.perf_counter(), 0
     for frame in frames:
         store.write(frame)
         again()
         n += 1
-        now = time.monotonic()
+        now = time.perf_counter()
         if shown and now - since > SHOW_EVERY_S:
             rate = n / (now - since)
             click.echo(f"\r{store.n_frames} frames, {rate:.0f} a second ", nl=False, err=True)
