@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import sys
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping
@@ -17,6 +16,7 @@ from tactile_graph.cli.completions import complete_source, complete_with
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 from tactile_graph.cli.targets import check_targets
+from tactile_graph.foreign_text import pasted
 
 if TYPE_CHECKING:
     from tactile_graph.errors import DataError
@@ -126,7 +126,7 @@ def record(
         _tell(store, report, by_port=source is None)
     if failure is not None:
         if isinstance(failure, UsageError) and store is not None and target.exists():
-            say(f"'record --append {shlex.quote(str(target))}' goes on with it", err=True)
+            say(f"'record --append {pasted(str(target))}' goes on with it", err=True)
         raise failure
     if ended is not None and (store is None or isinstance(ended, Ended)):
         say(words_of(ended), err=True)
