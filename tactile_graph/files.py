@@ -261,6 +261,14 @@ def looked_for(name: Name) -> None:
     sys.audit(LOOKED_FOR, os.fspath(name))
 
 
+def named_from_folder(path: Name, folder: Name = os.curdir) -> str:
+    """Return how a path is named from a folder; in full where it lies on another drive."""
+    try:
+        return os.path.relpath(path, folder)
+    except ValueError:
+        return os.path.abspath(path)
+
+
 def not_a_path(name: str) -> str:
     """Return why a name that a person gave is no path of a file, as a sentence's end; or ""."""
     if re.match(r"[a-z][a-z0-9+.-]+:/", name, re.I):
