@@ -47,7 +47,7 @@ def new(name: str, kind: str, step: str | None, into: Path) -> None:
     say("Next:")
     for command in (
         f"cd {pasted(str(folder))}",
-        f"pip install -e {pasted('.[test]')}",
+        'pip install -e ".[test]"',
         "pytest",
         f"tactile-graph steps {names.step}",
         f"tactile-graph {words_of(names, kind)['try_it']}",

@@ -108,7 +108,7 @@ class Hdf5:
         try:
             import h5py
         except ImportError:
-            raise UsageError("HDF5 files need h5py: pip install 'tactile-graph[hdf5]'") from None
+            raise UsageError('HDF5 files need h5py: pip install "tactile-graph[hdf5]"') from None
         self._written = _Patient(path, "w+")
         self._file = h5py.File(self._written, "w")
         self._file.attrs.update(about)
@@ -147,7 +147,7 @@ class Zarr:
         try:
             import zarr
         except ImportError:
-            raise UsageError("Zarr stores need zarr: pip install 'tactile-graph[zarr]'") from None
+            raise UsageError('Zarr stores need zarr: pip install "tactile-graph[zarr]"') from None
         self._group: Any = zarr.create_group(str(path), attributes=about)
 
     def array(self, name: str, row: tuple[int, ...], cells: Cells, about: dict[str, Any]) -> Any:

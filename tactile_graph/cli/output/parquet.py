@@ -28,7 +28,7 @@ LARGEST = 2**63
 """Whole numbers in Parquet are below this, and not below its negative."""
 FRAME = "frame"
 """The column of numbers that frames are counted by."""
-MISSING = "Parquet files need pyarrow: pip install 'tactile-graph[parquet]'"
+MISSING = 'Parquet files need pyarrow: pip install "tactile-graph[parquet]"'
 
 
 def pyarrow() -> Any:
