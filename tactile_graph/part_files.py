@@ -65,17 +65,22 @@ def put_in_place(part: Path, target: Path, called: str | os.PathLike[str]) -> No
     try:
         if target.is_dir():
             _put_over_folder(part, target)
-        elif part.is_dir():
-            part.rename(target)
         else:
-            put_over(part, target)
+            os.replace(part, target)
     except OSError as error:
         if error.errno not in _HELD:
             raise
         beside = target.with_name(f"{target.stem}.new-{os.getpid()}{target.suffix}")
-        put_over(part, beside)
-        told = f"{os.fspath(called)}: cannot be written: {error.strerror or error}"
-        raise UsageError(f"{told}; it lies whole in {beside}") from error
+        _move(part, beside)  # from now on a kill leaves it as well
+        try:
+            if beside.is_dir():
+                raise error  # no folder is written into another
+            _write_into(target, beside)
+        except OSError as last:
+            told = f"{os.fspath(called)}: cannot be written: {last.strerror or last}"
+            told += f"; it lies whole in {beside}"
+            old = _old_of(target)
+            raise UsageError(f"{told}, the older one in {old}" if old.exists() else told) from last
 
 
 def put_over(new: Path, older: Path) -> None:
@@ -91,22 +96,33 @@ def put_over(new: Path, older: Path) -> None:
     except OSError as error:
         if error.errno not in _HELD:
             raise
-        if new.is_dir():
-            shutil.copytree(new, older)
+        _write_into(older, new)
+
+
+def _write_into(older: Path, new: Path) -> None:
+    with new.open("rb") as source, older.open("wb") as file:
+        shutil.copyfileobj(source, file)
+        file.flush()
+        os.fsync(file.fileno())  # the other copy goes now
+    remove(new)
+
+
+def _move(part: Path, beside: Path) -> None:
+    try:
+        os.replace(part, beside)
+    except OSError:  # as where something looks through it on Windows
+        if part.is_dir():
+            shutil.copytree(part, beside)
         else:
-            with new.open("rb") as source, older.open("wb") as file:
-                shutil.copyfileobj(source, file)
-                file.flush()
-                os.fsync(file.fileno())  # the other copy goes now
-        remove(new)
+            shutil.copyfile(part, beside)
+        remove(part)
 
 
 def _put_over_folder(part: Path, target: Path) -> None:
     if _exchanged(part, target):
         remove(part)
         return
-    # A folder that is not empty is not replaced. `part_of` finds this one after a kill.
-    old = target.with_name(f".{target.name}.{_machine()}-{os.getpid()}.part.old")
+    old = _old_of(target)  # a folder that is not empty is not replaced
     target.rename(old)
     try:
         part.rename(target)
@@ -114,6 +130,11 @@ def _put_over_folder(part: Path, target: Path) -> None:
         old.rename(target)
         raise
     remove(old)
+
+
+def _old_of(target: Path) -> Path:
+    """Return the name of an older folder while it is replaced; `part_of` finds it after a kill."""
+    return target.with_name(f".{target.name}.{_machine()}-{os.getpid()}.part.old")
 
 
 def _exchanged(one: Path, other: Path) -> bool:

@@ -172,6 +172,27 @@ def test_a_folder_that_cannot_be_replaced_stays_and_the_new_one_lies_beside_it(
     assert sorted(tmp_path.iterdir()) == sorted([target, beside])
 
 
+def test_a_disc_that_is_full_as_an_older_file_is_written_into_takes_neither(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    replace = os.replace
+
+    def full(source: object, file: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    (tmp_path / "a.csv").write_text("old")
+    monkeypatch.setattr(
+        os,
+        "replace",
+        lambda a, b: refused() if b.suffix == ".csv" and b.stem == "a" else replace(a, b),
+    )
+    monkeypatch.setattr(part_files.shutil, "copyfileobj", full)
+    told = pytest.raises(UsageError, match=r"No space left on device; it lies whole in .*a\.new-")
+    with told, whole_file(tmp_path / "a.csv") as file:
+        file.write(b"new")
+    assert (tmp_path / f"a.new-{os.getpid()}.csv").read_text() == "new"
+
+
 def test_a_file_that_can_be_neither_replaced_nor_written_into_lies_beside_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
