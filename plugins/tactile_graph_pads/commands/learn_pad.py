@@ -12,7 +12,6 @@ import click
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
-    from tactile_graph.foreign_text import pasted_words
     from tactile_graph_pads.learning.learn import LearnedPad
     from tactile_graph_pads.learning.pad_file import Making
     from tactile_graph_pads.learning.recordings import Stack
@@ -133,6 +132,7 @@ def _making(stacks: Sequence[Stack | None], pad_name: str) -> Making:
     from datetime import UTC, datetime
     from importlib.metadata import version
 
+    from tactile_graph.foreign_text import pasted_words
     from tactile_graph_pads.learning.pad_file import Making
 
     digests = {name: d for s in stacks if s is not None for name, d in s.digests.items()}
