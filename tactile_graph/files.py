@@ -20,7 +20,7 @@ from types import FrameType
 from typing import Any, BinaryIO
 
 from tactile_graph.errors import UsageError
-from tactile_graph.part_files import part_of, remove
+from tactile_graph.part_files import part_of, put_in_place, remove
 
 Name = str | os.PathLike[str]
 LOOKED_FOR = "tactile_graph.looked_for"
@@ -61,9 +61,9 @@ def whole_file(name: Name, by: str = "") -> Iterator[BinaryIO]:
                 os.fsync(file.fileno())  # or a power cut may leave the name without the content
             if target.exists():
                 part.chmod(stat.S_IMODE(target.stat().st_mode))
-            part.replace(target)
+            put_in_place(part, target, name)
         except BaseException:
-            part.unlink(missing_ok=True)
+            remove(part)
             raise
 
 
@@ -259,6 +259,14 @@ def looked_for(name: Name) -> None:
     Whoever finds out by other means than opening it calls this, so that it is seen to come.
     """
     sys.audit(LOOKED_FOR, os.fspath(name))
+
+
+def named_from_folder(path: Name, folder: Name = os.curdir) -> str:
+    """Return how a path is named from a folder; in full where it lies on another drive."""
+    try:
+        return os.path.relpath(path, folder)
+    except ValueError:
+        return os.path.abspath(path)
 
 
 def not_a_path(name: str) -> str:

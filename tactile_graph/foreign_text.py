@@ -1,10 +1,12 @@
-"""Text from names and files, made safe to show, and to open as a spreadsheet."""
+"""Text from names and files, made safe to show, to paste, and to open as a spreadsheet."""
 
 from __future__ import annotations
 
 import csv
 import io
+import os
 import re
+import shlex
 import sys
 from collections.abc import Iterable
 from typing import Any
@@ -15,6 +17,8 @@ _HIDDEN = re.compile(
     "\u2028\u2029\ufeff\ufff9-\ufffb\ud800-\udfff\ufffe\uffff\U000e0000-\U000e007f]"
 )
 _ASCII_HIDDEN = bytes([*range(9), *range(11, 32), 127])
+_SPECIAL = re.compile(r"[^\w.:/\\+=~-]")
+"""What cmd.exe or PowerShell may take for more than a letter of a word."""
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
@@ -40,6 +44,46 @@ def tell(text: str) -> None:
 def _spelled(found: re.Match[str]) -> str:
     units = found[0].encode("utf-16-be", "surrogatepass").hex()
     return "".join(f"\\u{units[i : i + 4]}" for i in range(0, len(units), 4))
+
+
+def pasted(word: str) -> str:
+    r"""Return a word as a shell (bash, zsh, ksh) takes it for one, all of it seen.
+
+    What is not seen, and bytes that are no UTF-8, stand as ``$'\377'``. On Windows it is in double
+    quotes where it must be, as its programs take them (``subprocess.list2cmdline``).
+    """
+    if os.name == "nt":
+        return _for_windows(visible(word))
+    if visible(word) == word and "\n" not in word and "\t" not in word:
+        return shlex.quote(word)
+    return f"$'{''.join(map(_in_octal, word))}'"
+
+
+def pasted_path(path: str) -> str:
+    """Return a path likewise, and so that none is taken for an option."""
+    return pasted(f"./{path}" if path.startswith("-") else path)
+
+
+def pasted_words(words: Iterable[str]) -> str:
+    """Return a command line of several words."""
+    return " ".join(map(pasted, words))
+
+
+def _for_windows(word: str) -> str:
+    if word and not _SPECIAL.search(word):
+        return word
+    doubled = re.sub(r'(\\*)("|\Z)', lambda m: m[1] * 2 + m[2].replace('"', '\\"'), word)
+    return f'"{doubled}"'
+
+
+def _in_octal(character: str) -> str:
+    if character in "'\\":
+        return f"\\{character}"
+    if visible(character) == character and character not in "\n\t":
+        return character
+    is_byte = "\udc80" <= character <= "\udcff"  # that is no UTF-8
+    raw = character.encode("utf-8", "surrogateescape" if is_byte else "surrogatepass")
+    return "".join(f"\\{byte:03o}" for byte in raw)
 
 
 def html_text(text: str) -> str:

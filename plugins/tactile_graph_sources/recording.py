@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Callable, Iterator
 from itertools import islice
 from pathlib import Path
@@ -13,6 +12,7 @@ from annotated_types import Ge, Gt
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.files import not_a_path, sha256_of
+from tactile_graph.foreign_text import pasted
 from tactile_graph.quantities import QuantityName
 from tactile_graph.steps import Quantity, Report
 from tactile_graph.wires import Frame
@@ -252,7 +252,7 @@ def _no_recording(folder: Path) -> DataError:
         return DataError(str(folder), "is a directory without a file in it; give a file")
     some = ", ".join(held[:MOST_NAMED]) + (", …" if len(held) > MOST_NAMED else "")
     told = f"is a directory; give a file in it ({some})"
-    several = f", or all of them: {shlex.quote(str(folder))}/*" if len(held) > 1 else ""
+    several = f", or all of them: {pasted(str(folder))}/*" if len(held) > 1 else ""
     if held != sorted(held):
         several = (
             ", or several in the order in which they are to be read (a shell's * puts 10 before 2)"

@@ -88,7 +88,7 @@ class _Clock:
 
     def wait_for(self, moment: float, starts: bool, report: Report) -> bool:
         """Return whether a frame is wanted still once the moment is there."""
-        now = time.monotonic()
+        now = time.perf_counter()
         if self._last is None or starts:
             self._due = now
         else:
@@ -97,7 +97,7 @@ class _Clock:
                 step = min(step, self.longest_pause_s)
             self._due = max(self._due + step / self.speed, now - 1.0)
         self._last = moment
-        while (left := self._due - time.monotonic()) > 0:
+        while (left := self._due - time.perf_counter()) > 0:
             if not report.wanted:
                 return False
             time.sleep(min(left, LOOK_S))

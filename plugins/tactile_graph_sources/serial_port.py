@@ -66,9 +66,9 @@ def serial(
     Yields
     ------
     Frame
-        ``time_s`` is the host's monotonic clock when the last byte came, ``device_time_s`` the
-        pad's own clock, ``gap`` true where frames were lost on the way just before this one,
-        ``doubtful`` where the protocol cannot tell whether frames start there.
+        ``time_s`` is the host's clock (`time.perf_counter`) when the last byte came,
+        ``device_time_s`` the pad's own clock, ``gap`` true where frames were lost on the way just
+        before this one, ``doubtful`` where the protocol cannot tell whether frames start there.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def serial(
     if n_frames is not None:
         report.expect(n_frames)
     teller = _Teller(reader, report)
-    end = math.inf if seconds is None else time.monotonic() + seconds
+    end = math.inf if seconds is None else time.perf_counter() + seconds
     try:
         index = 0
         while n_frames is None or index < n_frames:
@@ -108,7 +108,7 @@ class _Teller:
         self._next = 0.0
 
     def tell(self, force: bool = False) -> None:
-        now = time.monotonic()
+        now = time.perf_counter()
         if now < self._next and not force:
             return
         self._next = now + REPORT_EVERY_S
@@ -141,16 +141,16 @@ def _next(reader: Reader, teller: _Teller, give_up_s: float | None, end: float) 
 
     None too once no frame is wanted any more: the port is then free for others.
     """
-    start = time.monotonic()
+    start = time.perf_counter()
     while teller.report.wanted:
         teller.tell()
-        left = end - time.monotonic()
+        left = end - time.perf_counter()
         arrived = reader.inbox.get(max(0.0, min(REPORT_EVERY_S, left)))
         if arrived is not None:
             return arrived if arrived.time_s <= end else None
         if left <= 0:
             return None
-        if give_up_s is not None and time.monotonic() - start > give_up_s:
+        if give_up_s is not None and time.perf_counter() - start > give_up_s:
             teller.tell(force=True)
             raise DataError(reader.url, f"no frame for {give_up_s:g} s ({reader.state})")
     return None

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from tactile_graph.errors import DataError
+from tactile_graph.foreign_text import pasted
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.frame_stack import FrameStack
@@ -75,7 +75,7 @@ def _tell_damage(stored: Stored, report: Report) -> None:
     for trouble in stored.troubles:
         report.trouble(str(stored.path), trouble)
     if stored.troubles:
-        command = f"tactile-graph check --repair {shlex.quote(str(stored.path))}"
+        command = f"tactile-graph check --repair {pasted(str(stored.path))}"
         report.trouble(str(stored.path), f"'{command}' may mend it")
     if not stored.sure:
         report.trouble(str(stored.path), UNSURE)

@@ -43,8 +43,13 @@ def _open_streams() -> None:
     """Refuse a standard output that is closed; a standard error that is goes nowhere.
 
     The next file opened would take the number of one that is closed, and what libraries print with
-    it.
+    it; processes that share work take those numbers for themselves.
     """
+    for number in (0, 1, 2):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # gets the lowest: this one
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115 -- until the end
     if sys.stdout is None:

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
-from tactile_graph.files import LOOKED_FOR
+from tactile_graph.files import LOOKED_FOR, named_from_folder
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -89,7 +89,8 @@ def _next_change(stamps: Mapping[str, Stamp], wait: Callable[[float], None]) -> 
         wait(SETTLED_S)
         later = {path: stamp(path) for path in stamps}
         settled, now = later == now, later
-    return [os.path.relpath(path) for path in stamps if now[path] != stamps[path]] or ["a file"]
+    changed = [named_from_folder(path) for path in stamps if now[path] != stamps[path]]
+    return changed or ["a file"]
 
 
 def stamp(path: str) -> Stamp:

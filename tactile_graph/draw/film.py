@@ -35,7 +35,7 @@ from tactile_graph.draw.strip_columns import Column
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, outcome_word
 from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.files import said, uninterrupted
-from tactile_graph.part_files import part_of
+from tactile_graph.part_files import part_of, put_in_place, remove
 from tactile_graph.wires import Frame
 
 if TYPE_CHECKING:
@@ -213,9 +213,9 @@ def _part(path: Path) -> Iterator[Path]:
             yield part
             with part.open("rb+") as file:
                 os.fsync(file.fileno())  # some discs tell only now that they are full
-            part.replace(target)
+            put_in_place(part, target, path)
         finally:
-            part.unlink(missing_ok=True)
+            remove(part)
 
 
 # -- the pictures --------------------------------------------------------------------------------

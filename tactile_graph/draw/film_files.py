@@ -32,7 +32,7 @@ REASONS = (
 )  # fmt: skip
 """Why the system lets no file be written, the likeliest first; ffmpeg tells them in a line."""
 MISSING = (
-    "films in MP4 need imageio-ffmpeg: pip install 'tactile-graph[film]'; a .gif needs nothing more"
+    'films in MP4 need imageio-ffmpeg: pip install "tactile-graph[film]"; a .gif needs nothing more'
 )
 
 

@@ -11,7 +11,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph.many.executor_kind import ExecutorKind, Opened
 
 PATIENCE_S = 5
-MISSING = "a Dask cluster needs Dask: pip install 'tactile-graph[cluster]'"
+MISSING = 'a Dask cluster needs Dask: pip install "tactile-graph[cluster]"'
 
 
 def opened(address: str, n_workers: int | None) -> Opened:

@@ -10,6 +10,7 @@ from pathlib import Path
 import yaml
 
 from tactile_graph.errors import TactileGraphError, UsageError
+from tactile_graph.files import named_from_folder
 from tactile_graph.pipeline.load import beside, is_file, parse_graph
 from tactile_graph.pipeline.yaml_numbers import on_one_line
 from tactile_graph.plugins.registry import Registry
@@ -74,10 +75,7 @@ def named_from(name: str, file: str | Path, target: str | Path) -> str:
     if found is None or (there is not None and there.samefile(found)):
         return name
     folder = os.path.realpath(Path(target).parent)
-    try:
-        return Path(os.path.relpath(found, folder)).as_posix()
-    except ValueError:  # on another drive
-        return Path(os.path.abspath(found)).as_posix()
+    return Path(named_from_folder(found, folder)).as_posix()
 
 
 def _names(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:

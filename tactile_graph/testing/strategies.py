@@ -17,7 +17,7 @@ try:
     from hypothesis import strategies as st
     from hypothesis.extra.numpy import arrays
 except ImportError:
-    raise UsageError("strategies need hypothesis: pip install 'tactile-graph[test]'") from None
+    raise UsageError('strategies need hypothesis: pip install "tactile-graph[test]"') from None
 
 Strategy = st.SearchStrategy
 LARGEST_CM = 1000.0

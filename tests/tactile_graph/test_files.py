@@ -92,10 +92,10 @@ def test_a_pipe_is_written_to_and_stays_a_pipe(tmp_path: Path) -> None:
 def test_a_device_is_written_to_and_what_it_refuses_is_said(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def replace(self: Path, target: Path) -> Path:
+    def replace(part: Path, target: Path) -> None:
         raise AssertionError(f"{target} would be gone")
 
-    monkeypatch.setattr(Path, "replace", replace)  # root could really do it
+    monkeypatch.setattr(os, "replace", replace)  # root could really do it
     with pytest.raises(UsageError, match="/dev/full: cannot be written: No space left on device"):
         write_whole("/dev/full", "x")
     write_whole("/dev/null", "x")

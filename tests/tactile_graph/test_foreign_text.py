@@ -6,6 +6,8 @@ import ast
 import csv
 import io
 import json
+import os
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -13,7 +15,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tactile_graph.cli.terminal import console
-from tactile_graph.foreign_text import csv_line, html_text, visible
+from tactile_graph.foreign_text import (
+    csv_line,
+    html_text,
+    pasted,
+    pasted_path,
+    pasted_words,
+    visible,
+)
 
 ROOT = Path(__file__).parents[2]
 ECHOES = {
@@ -86,3 +95,43 @@ def test_commands_print_by_the_one_function(folder: str) -> None:
             if call in ("click.echo", "click.secho", "print"):
                 found.add(path.relative_to(ROOT).as_posix())
     assert found <= ECHOES
+
+
+@pytest.mark.parametrize(
+    "word",
+    ["a", "my mat", "it's", "$HOME", "a\nb'\\\t", "\udcff7", "\x1b[31m", "\u202eä", "ä", "*"],
+)
+def test_a_shell_takes_it_for_one_word_that_is_all_seen(word: str) -> None:
+    told = pasted(word)
+    assert told.isprintable()
+    raw = subprocess.run(
+        ["bash", "-c", f"printf %s {told}"], capture_output=True, check=True
+    ).stdout
+    assert os.fsdecode(raw) == word
+
+
+def test_a_path_is_no_option() -> None:
+    assert pasted_path("-x.npy") == "./-x.npy"
+    assert pasted_path("x.npy") == "x.npy"
+    assert pasted("-x") == "-x"
+
+
+@pytest.mark.parametrize(
+    ("word", "told"),
+    [
+        (r"C:\mats\a-1.csv", r"C:\mats\a-1.csv"),
+        (r"C:\my mats\a.csv", r'"C:\my mats\a.csv"'),
+        ("C:\\my mats\\", r'"C:\my mats\\"'),
+        (r"C:\a&b", r'"C:\a&b"'),
+        (r'a "b\"', r'"a \"b\\\""'),
+        ("it's", '"it\'s"'),
+        ("", '""'),
+    ],
+)
+def test_on_windows_what_must_be_is_in_double_quotes(
+    word: str, told: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "name", "nt")
+    assert pasted_words([word, "a"]) == f"{told} a"
+    if " " in word:  # which Windows' own rule looks at
+        assert told == subprocess.list2cmdline([word])

@@ -244,7 +244,7 @@ def test_without_the_extra_it_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "zarr", None)
-    with pytest.raises(UsageError, match=r"pip install 'tactile-graph\[zarr\]'"):
+    with pytest.raises(UsageError, match=r'pip install "tactile-graph\[zarr\]"'):
         StoreWriter(tmp_path / "a.zarr")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +13,7 @@ from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.many.options import place_for, workers_options
 from tactile_graph.cli.say import say
 from tactile_graph.errors import UsageError
+from tactile_graph.foreign_text import pasted
 from tactile_graph_classifiers.commands.shared import database_option, tell_apart, tell_assumed_pad
 from tactile_graph_classifiers.measuring.shapes import SHAPES
 
@@ -105,7 +105,7 @@ def learn(
         f"{len(read.rows)} readings learned, {total.n_readings} in all"
     )
     if twice:
-        again = f"tactile-graph forget {shlex.quote(plain_name)}"
+        again = f"tactile-graph forget {pasted(plain_name)}"
         say(
             f"{twice} of these were learned before, from the same frames or a copy of them, and "
             f"count twice now; "
@@ -133,7 +133,7 @@ def _say_namesakes(known: Known, name: str) -> None:
     """Say of a new object which others differ from it by case, spaces and signs alone."""
     for other in known.names:
         if other != name and _letters(other) == _letters(name):
-            again = f"tactile-graph forget {shlex.quote(name)}"
+            again = f"tactile-graph forget {pasted(name)}"
             say(f"{name!r} is a new object beside {other!r}{_alike(known, name, other)}; did you"
                 f" mean {other!r}? Then {again}, and learn it as that", err=True)  # fmt: skip
 

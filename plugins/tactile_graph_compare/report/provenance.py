@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import shlex
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from tactile_graph.foreign_text import pasted, pasted_words
 from tactile_graph_compare.records.comparison import Comparison
 from tactile_graph_compare.report.markup import Html, details, join, tag
 from tactile_graph_compare.variants.request import as_yaml
@@ -56,13 +56,13 @@ def command(comparison: Comparison) -> str:
     told = comparison.provenance
     typed = [str(w) for w in told.get("command") or ()]
     if typed and Path(typed[0]).stem in ("tactile-graph", "__main__") and "compare" in typed:
-        return shlex.join(["tactile-graph", *typed[1:]])
+        return pasted_words(["tactile-graph", *typed[1:]])
     words = ["tactile-graph", "compare", *(v.given for v in comparison.variants)]
     if _step(told):
-        words += ["--source", shlex.quote(_step(told))]
+        words += ["--source", pasted(_step(told))]
         for key, value in (told["source"].get("with") or {}).items():
             if value is not None:
-                words += ["--with", shlex.quote(f"{key}={as_yaml(value)}")]
+                words += ["--with", pasted(f"{key}={as_yaml(value)}")]
         words += ["--frames", _span(told, comparison.frames.n)]
     else:
         words.append("RECORDING")

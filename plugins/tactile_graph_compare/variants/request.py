@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 from collections.abc import Mapping
@@ -11,6 +12,7 @@ from typing import Any
 
 from tactile_graph import Pipeline
 from tactile_graph.errors import UsageError
+from tactile_graph.foreign_text import pasted
 from tactile_graph.inspect import plain
 from tactile_graph.pipeline.document import assignment
 from tactile_graph.plugins.registry import Registry
@@ -76,7 +78,8 @@ def parse_request(text: str, registry: Registry) -> VariantRequest:
 def words_of(text: str) -> list[str]:
     """Return a variant's words, the pipeline's name or file first.
 
-    A file's spaces need no quotes, unless two dashes follow: there the options begin.
+    A file's spaces need no quotes, unless two dashes follow: there the options begin. Quotes are
+    taken away as in a shell; on Windows a backslash is a letter as any.
 
     Raises
     ------
@@ -85,8 +88,17 @@ def words_of(text: str) -> list[str]:
     """
     found = re.match(r"(?P<file>(?:(?!\s--).)+?\.ya?ml)(?P<rest>\s+--.*)?$", text, re.DOTALL)
     if found is None or found["file"][0] in "\"'":
-        return shlex.split(text)
-    return [found["file"], *shlex.split(found["rest"] or "")]
+        return _split(text)
+    return [found["file"], *_split(found["rest"] or "")]
+
+
+def _split(text: str) -> list[str]:
+    words = shlex.shlex(text, posix=True, punctuation_chars=False)
+    words.whitespace_split = True
+    words.commenters = ""
+    if os.name == "nt":
+        words.escape = ""
+    return list(words)
 
 
 def spelled(name: str, settings: Mapping[str, Any], only: tuple[str, ...]) -> str:
@@ -96,7 +108,7 @@ def spelled(name: str, settings: Mapping[str, Any], only: tuple[str, ...]) -> st
         words += ["--set", f"{key}={as_yaml(value)}"]
     for node in only:
         words += ["--only", node]
-    return shlex.quote(shlex.join(words)) if len(words) > 1 else shlex.quote(name)
+    return pasted(shlex.join(words) if len(words) > 1 else name)
 
 
 def as_yaml(value: Any) -> str:

@@ -60,7 +60,7 @@ class Bench:
         self._ring = Ring()
         self._tally = _Tally()
         self._newest: Frame | None = None
-        self._newest_s = time.monotonic()
+        self._newest_s = time.perf_counter()
         self._shown: tuple[str, ...] = ()
         self._baseline = order.baseline
         self._taring: Taring | None = None
@@ -157,9 +157,9 @@ class Bench:
 
     def _await_close(self) -> None:
         """Wait until the source is closed: the next may be on the same port."""
-        latest = time.monotonic() + CLOSE_S
+        latest = time.perf_counter() + CLOSE_S
         while not (self._player.closed.wait(0.05) or self._ended):
-            if time.monotonic() > latest:
+            if time.perf_counter() > latest:
                 self._say("the source before does not end; what it holds is not free", "warning")
                 return
 
@@ -221,7 +221,7 @@ class Bench:
         if time.perf_counter_ns() >= self._next_summary_ns + SUMMARY_NS and not (
             self._ended or self._idle
         ):
-            silent = time.monotonic() - self._newest_s > SILENT_S
+            silent = time.perf_counter() - self._newest_s > SILENT_S
             begun = self._tally.n_frames > 0 or self._newest is None
             self._summarise("waiting" if silent else "running" if begun else "starting")
 
@@ -251,7 +251,7 @@ class Bench:
     def _frames(self) -> Iterator[Frame]:
         """Yield the source's frames, kept as they came and less the baseline."""
         for frame in self._player:
-            self._newest, self._newest_s = frame, time.monotonic()
+            self._newest, self._newest_s = frame, time.perf_counter()
             self._ring.add(frame, self._newest_s)
             if self._wants.frames:
                 self._outbox.frame(frame)
@@ -371,7 +371,7 @@ class Bench:
 
     def _heard(self, where: str, what: str) -> None:
         """Pass on what the source says, and keep it: it may be why no frame comes."""
-        self._trouble, self._trouble_s = f"{where}: {what}", time.monotonic()
+        self._trouble, self._trouble_s = f"{where}: {what}", time.perf_counter()
         self._say(self._trouble, "warning")
 
     def _say(self, text: str, level: Level = "note") -> None:

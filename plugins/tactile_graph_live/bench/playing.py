@@ -157,10 +157,10 @@ class Player:
         """Wait until a frame may go; return False when none is wanted any more."""
         if self._pace is None:
             return not self._ended
-        due = time.monotonic() + self._pace.wait_s(frame, time.monotonic())
+        due = time.perf_counter() + self._pace.wait_s(frame, time.perf_counter())
         with self._changed:
             while not self._ended:
-                left = due - time.monotonic()
+                left = due - time.perf_counter()
                 if self._more:
                     self._more -= 1
                     return True

@@ -53,8 +53,8 @@ class Ring:
         self._lock = Lock()
 
     def add(self, frame: Frame, now: float | None = None) -> None:
-        """Keep a frame that came now (``time.monotonic``)."""
-        now = time.monotonic() if now is None else now
+        """Keep a frame that came now (``time.perf_counter``)."""
+        now = time.perf_counter() if now is None else now
         with self._lock:
             self._kept.append(Kept(now, frame))
             self._bytes += frame.image.values.nbytes

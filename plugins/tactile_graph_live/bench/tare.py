@@ -48,10 +48,10 @@ class Taring:
         if self._readings and self._readings[0].shape != readings.shape:
             self._readings.clear()
         if not self._readings:  # it may have been asked for long before a frame comes
-            self._since = time.monotonic()
+            self._since = time.perf_counter()
         self._readings.append(readings)
         n = len(self._readings)
-        late = time.monotonic() - self._since > LONGEST_S and n >= FEWEST
+        late = time.perf_counter() - self._since > LONGEST_S and n >= FEWEST
         if n < N_FRAMES and not late:
             return None
         frames = np.stack(self._readings)

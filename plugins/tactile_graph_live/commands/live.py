@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tactile_graph_live.server.session import Setup
 
 PARTS = ("starlette", "uvicorn", "websockets")
-MISSING = "live needs {}: pip install 'tactile-graph[live]'"
+MISSING = 'live needs {}: pip install "tactile-graph[live]"'
 DEADLINE = re.compile(r"(?P<number>\d+(\.\d*)?|\.\d+)\s*(?P<unit>us|µs|ms|s)")
 MICROSECONDS = {"us": 1.0, "µs": 1.0, "ms": 1e3, "s": 1e6}
 EPILOG = """\b

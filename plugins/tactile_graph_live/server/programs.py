@@ -49,7 +49,7 @@ class Program:
                 await self._send(self._waiting.popleft())
 
     async def _send(self, text: str) -> None:
-        self.busy_since = time.monotonic()
+        self.busy_since = time.perf_counter()
         await self._channel.send_text(text)
         self.busy_since = None
 
@@ -79,7 +79,7 @@ class Programs:
 
     def drop_stuck(self) -> None:
         """Let go of those that have read nothing for `PATIENCE_S`."""
-        now = time.monotonic()
+        now = time.perf_counter()
         for program, task in self._all.items():
             since = program.busy_since
             if since is not None and now - since > PATIENCE_S and not program.dropped:

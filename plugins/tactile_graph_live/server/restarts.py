@@ -20,7 +20,7 @@ class Restarts:
     def news(self, processes: Mapping[str, ProcessState]) -> Iterator[str]:
         """Yield what there is to say of the processes of nodes, each once for all that share it."""
         whose = {state.name or node: (node, state) for node, state in processes.items()}
-        now = time.monotonic()
+        now = time.perf_counter()
         for key, (node, state) in whose.items():
             n_told, at_s = self._told.get(key, (0, -QUIET_S))
             if state.n_restarts < n_told:  # another one since the file was changed

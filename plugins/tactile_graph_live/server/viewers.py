@@ -122,11 +122,11 @@ class Viewer:
                 await self._send(text)
             if self._newest is not None and len(self._unanswered) < UNANSWERED:
                 picture, self._newest = self._newest, None
-                self._unanswered.append((picture, time.monotonic()))
+                self._unanswered.append((picture, time.perf_counter()))
                 await self._send(picture.text(self.shown))
 
     async def _send(self, text: str) -> None:
-        self._busy_since = time.monotonic()
+        self._busy_since = time.perf_counter()
         await self._channel.send_text(text)
         self._busy_since = None
 
@@ -162,7 +162,7 @@ class Viewers:
 
     def drop_stuck(self) -> None:
         """Let go of those who have read nothing for `PATIENCE_S`."""
-        now = time.monotonic()
+        now = time.perf_counter()
         for viewer, task in list(self._all.items()):
             if viewer.stuck_s(now) > PATIENCE_S and not viewer.dropped:
                 viewer.dropped = f"it read nothing for {PATIENCE_S:g} s"

@@ -33,7 +33,7 @@ class Vitals:
 
     def add(self, summary: Summary) -> None:
         """Take a summary of the bench."""
-        now = time.monotonic()
+        now = time.perf_counter()
         before = self._before
         self.summary = summary = replace(
             summary,
@@ -54,7 +54,7 @@ class Vitals:
     def drawn(self, arrived_ns: int) -> None:
         """Note that a viewer has drawn a frame that arrived then."""
         us = (time.perf_counter_ns() - arrived_ns) / 1e3
-        self._pages.append((time.monotonic(), np.array([us], np.float32)))
+        self._pages.append((time.perf_counter(), np.array([us], np.float32)))
 
     def rate_hz(self) -> float:
         """Return how many frames a second were done of late."""
@@ -97,7 +97,7 @@ def _told(processes: Mapping[str, ProcessState]) -> dict[str, Plain]:
 
 def _quantiles(gathered: deque[tuple[float, Times]]) -> Quantiles:
     """Return quantiles of the last seconds, and forget what is older."""
-    while gathered and gathered[0][0] < time.monotonic() - WINDOW_S:
+    while gathered and gathered[0][0] < time.perf_counter() - WINDOW_S:
         gathered.popleft()
     if not (times := [t for _, t in gathered if len(t)]):
         return Quantiles()

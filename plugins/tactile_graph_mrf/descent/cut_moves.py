@@ -215,6 +215,6 @@ def _maxflow() -> Callable[..., Any]:
         raise DataError(
             "graph_cuts",
             "needs PyMaxflow, which is not installed; "
-            "pip install 'tactile-graph[graphcut]', or take restore",
+            'pip install "tactile-graph[graphcut]", or take restore',
         ) from error
     return maxflow.Graph[float]  # type: ignore[no-any-return]

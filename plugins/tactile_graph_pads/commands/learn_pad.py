@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -133,11 +132,12 @@ def _making(stacks: Sequence[Stack | None], pad_name: str) -> Making:
     from datetime import UTC, datetime
     from importlib.metadata import version
 
+    from tactile_graph.foreign_text import pasted_words
     from tactile_graph_pads.learning.pad_file import Making
 
     digests = {name: d for s in stacks if s is not None for name, d in s.digests.items()}
     return Making(
-        shlex.join(["tactile-graph", *sys.argv[1:]]),
+        pasted_words(["tactile-graph", *sys.argv[1:]]),
         f"tactile-graph {version('tactile-graph')}",
         datetime.now(UTC).isoformat(timespec="seconds"),
         digests,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
 from itertools import islice
@@ -15,6 +14,7 @@ from tactile_graph.cli.completions import complete_source, complete_with
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 from tactile_graph.cli.targets import check_targets
+from tactile_graph.foreign_text import pasted
 from tactile_graph.plugins.registry import installed
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ def _check(recordings: list[Path], target: Path, source: str | None) -> str:
     if bool(recordings) == (source is not None):
         raise click.UsageError("give recordings before TARGET, or --source, and not both")
     if target.exists():
-        goes_on = f"; 'record --append {shlex.quote(str(target))}' goes on with it"
+        goes_on = f"; 'record --append {pasted(str(target))}' goes on with it"
         raise click.UsageError(
             f"{target} is there already; remove it, or choose another name"
             + (goes_on if is_store(target) else "")

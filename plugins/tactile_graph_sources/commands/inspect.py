@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from tactile_graph.cli.pasted import pasted, pasted_path
 from tactile_graph.cli.say import say
 from tactile_graph.cli.targets import check_targets
+from tactile_graph.foreign_text import pasted, pasted_path
 from tactile_graph.pipeline.document import is_plain
 from tactile_graph.plugins.registry import installed
 

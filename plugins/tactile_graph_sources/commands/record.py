@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import sys
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping
@@ -17,6 +16,7 @@ from tactile_graph.cli.completions import complete_source, complete_with
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 from tactile_graph.cli.targets import check_targets
+from tactile_graph.foreign_text import pasted
 
 if TYPE_CHECKING:
     from tactile_graph.errors import DataError
@@ -126,7 +126,7 @@ def record(
         _tell(store, report, by_port=source is None)
     if failure is not None:
         if isinstance(failure, UsageError) and store is not None and target.exists():
-            say(f"'record --append {shlex.quote(str(target))}' goes on with it", err=True)
+            say(f"'record --append {pasted(str(target))}' goes on with it", err=True)
         raise failure
     if ended is not None and (store is None or isinstance(ended, Ended)):
         say(words_of(ended), err=True)
@@ -204,10 +204,10 @@ def _check_target(target: Path) -> None:
 
 
 def _until(frames: Iterator[Frame], seconds: float | None) -> Iterator[Frame]:
-    end = None if seconds is None else time.monotonic() + seconds
+    end = None if seconds is None else time.perf_counter() + seconds
     for frame in frames:
         yield frame
-        if end is not None and time.monotonic() > end:
+        if end is not None and time.perf_counter() > end:
             return
 
 
@@ -217,12 +217,12 @@ def _keep(frames: Iterator[Frame], store: StoreWriter, again: Callable[[], None]
     ``again`` is called after each and raises a signal that was swallowed on its way here.
     """
     shown = sys.stderr.isatty()
-    since, n = time.monotonic(), 0
+    since, n = time.perf_counter(), 0
     for frame in frames:
         store.write(frame)
         again()
         n += 1
-        now = time.monotonic()
+        now = time.perf_counter()
         if shown and now - since > SHOW_EVERY_S:
             rate = n / (now - since)
             click.echo(f"\r{store.n_frames} frames, {rate:.0f} a second ", nl=False, err=True)

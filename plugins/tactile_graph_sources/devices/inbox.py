@@ -12,7 +12,7 @@ from tactile_graph_sources.devices.decoder import Decoded
 
 
 class Arrived(NamedTuple):
-    """A decoded frame and the host's monotonic time at which its last byte came."""
+    """A decoded frame and the host's time (`time.perf_counter`) at which its last byte came."""
 
     frame: Decoded
     time_s: float

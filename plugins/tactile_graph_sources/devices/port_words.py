@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 
 from tactile_graph.errors import did_you_mean, one_of
 
@@ -12,6 +13,8 @@ FORBIDDEN = (errno.EACCES, errno.EPERM)
 NO_PORT = (errno.EISDIR, errno.ENOTTY)
 TAKEN = "another program has it open"
 NETWORK = ("socket", "rfc2217")
+_WITHIN = re.compile(r"Error\((?P<number>\d+), (?P<quote>['\"])(?P<why>.*?)(?P=quote)[,)]")
+"""On Windows pyserial tells the system's error within its text alone, as Python shows it."""
 
 
 def refusal(port: str, error: BaseException, ports: list[str]) -> str:
@@ -28,6 +31,10 @@ def refusal(port: str, error: BaseException, ports: list[str]) -> str:
     """
     there = f"; ports here: {one_of(ports)}"
     number = getattr(error, "errno", None)
+    within = _WITHIN.search(str(error)) if number is None else None
+    if within is not None:  # a port that is open is opened by nobody else there, whoever asks
+        number = int(within["number"])
+        number = errno.EBUSY if number == errno.EACCES else number
     head = f"port {port!r} cannot be opened: "
     if "://" in port:
         return head + _of_url(port, error)
@@ -56,6 +63,8 @@ def _of_url(port: str, error: BaseException) -> str:
 def _last(error: BaseException) -> str:
     """Return the end of pyserial's text: before it stand the port and the number once more."""
     text = str(error) or type(error).__name__
+    if within := _WITHIN.search(text):
+        return within["why"]
     return text.rpartition("] ")[2] if "[Errno" in text else text
 
 

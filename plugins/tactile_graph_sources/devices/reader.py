@@ -59,7 +59,7 @@ class Reader:
         self._events: deque[str] = deque(maxlen=1000)
         self._chunks: deque[tuple[int, float]] = deque(maxlen=CHUNKS_KEPT)
         self._stop = threading.Event()
-        self._last_good = time.monotonic()
+        self._last_good = time.perf_counter()
         self._bytes_then = 0
         self._wait_s = min(READ_WAIT_S, preset.transport.silence_s)
         self._port: Port | None = self._open()
@@ -120,7 +120,7 @@ class Reader:
             self.counts.reconnects += 1
             self.state = "waiting"
             self._events.append("back")
-            self._last_good = time.monotonic()
+            self._last_good = time.perf_counter()
             return port
         return None
 
@@ -128,11 +128,11 @@ class Reader:
         """Read a pad that sends by itself."""
         if request:
             port.write(request)
-        last_byte = time.monotonic()
+        last_byte = time.perf_counter()
         silent = False
         while not self._stop.is_set():
             data = port.read()
-            now = time.monotonic()
+            now = time.perf_counter()
             if data:
                 self._take(data, now)
                 last_byte, silent = now, False
@@ -147,19 +147,19 @@ class Reader:
         while not self._stop.is_set():
             late = port.pending()
             if late:
-                self._take(late, time.monotonic())
+                self._take(late, time.perf_counter())
             self._keep(self.decoder.boundary())
             port.write(request)
             self._await_reply(port)
             self._keep(self.decoder.boundary())
-            self._stalled(time.monotonic())
+            self._stalled(time.perf_counter())
 
     def _await_reply(self, port: Port) -> None:
         good = self.counts.good
-        deadline = time.monotonic() + self._reply_s()
+        deadline = time.perf_counter() + self._reply_s()
         while not self._stop.is_set():
             data = port.read()
-            now = time.monotonic()
+            now = time.perf_counter()
             if data:
                 self._take(data, now)
             if self.counts.good > good:
@@ -186,7 +186,7 @@ class Reader:
     def _keep(self, frames: list[Decoded]) -> None:
         if not frames:
             return
-        self._last_good, self._bytes_then = time.monotonic(), self.counts.bytes
+        self._last_good, self._bytes_then = time.perf_counter(), self.counts.bytes
         self.state = "streaming"
         self.inbox.put([Arrived(f, self._time_of(f.end)) for f in frames])
 

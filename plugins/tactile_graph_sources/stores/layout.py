@@ -47,7 +47,7 @@ def load_zarr() -> ModuleType:
         import zarr
     except ImportError:
         raise UsageError(
-            "Zarr stores need the 'zarr' extra: pip install 'tactile-graph[zarr]'"
+            "Zarr stores need the 'zarr' extra: pip install \"tactile-graph[zarr]\""
         ) from None
     module: ModuleType = zarr
     return module

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shlex
 import shutil
 import time
 from collections.abc import Iterator, Mapping
@@ -15,6 +14,7 @@ import numpy as np
 
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import put_on_disc, said, uninterrupted, whole_folder
+from tactile_graph.foreign_text import pasted
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 from tactile_graph_sources.readers.words.truth import own_shapes, truth_to_json
@@ -333,7 +333,7 @@ class StoreWriter:
 
 
 def _damaged(path: Path, what: str) -> UsageError:
-    command = f"tactile-graph check --repair {shlex.quote(str(path))}"
+    command = f"tactile-graph check --repair {pasted(str(path))}"
     return UsageError(f"{path}: {what}; '{command}' may mend it")
 
 

@@ -45,7 +45,7 @@ def stress(names: tuple[str, ...], quick: bool, seed: int, output: Path | None) 
     from tactile_graph_stress.subject import chosen, subjects
 
     if find_spec("mpmath") is None:
-        raise UsageError("stress needs mpmath: pip install 'tactile-graph[stress]'")
+        raise UsageError('stress needs mpmath: pip install "tactile-graph[stress]"')
     if seed < 0:
         raise UsageError(f"--seed must be >= 0, got {seed}")
     if output is not None:

@@ -27,11 +27,10 @@ def new(name: str, kind: str, step: str | None, into: Path) -> None:
 
     It installs, passes its tests, and runs as it stands; then change it.
     """
-    import shlex
-
     from tactile_graph.cli.package.making import make_package, repository_around, words_of
     from tactile_graph.cli.package.names import names_of
     from tactile_graph.cli.say import say
+    from tactile_graph.foreign_text import pasted
 
     names = names_of(name, step, kind)
     folder = into / name
@@ -47,8 +46,8 @@ def new(name: str, kind: str, step: str | None, into: Path) -> None:
         )
     say("Next:")
     for command in (
-        f"cd {shlex.quote(str(folder))}",
-        "pip install -e '.[test]'",
+        f"cd {pasted(str(folder))}",
+        'pip install -e ".[test]"',
         "pytest",
         f"tactile-graph steps {names.step}",
         f"tactile-graph {words_of(names, kind)['try_it']}",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,7 +14,7 @@ from tactile_graph.cli.file_kinds import PIPELINE, YAML, file_kind, kind_names, 
 from tactile_graph.cli.say import hand_over, say
 from tactile_graph.cli.targets import check_targets
 from tactile_graph.errors import UsageError
-from tactile_graph.files import check_target, write_whole
+from tactile_graph.files import check_target, named_from_folder, write_whole
 from tactile_graph.foreign_text import visible
 from tactile_graph.plugins import registry
 
@@ -117,8 +116,9 @@ def _install(names: tuple[str, ...]) -> bool:
         if text != _text_of(file):
             write_whole(file, text)
         say(f"{file}: its schema is {path}", err=True)
-    below = [Path(os.path.relpath(file)) for file in files]
-    return _install_settings([file for file in below if ".." not in file.parts])
+    named = [Path(named_from_folder(file)) for file in files]
+    below = [file for file in named if ".." not in file.parts and not file.is_absolute()]
+    return _install_settings(below)
 
 
 def _install_settings(files: list[Path]) -> bool:

@@ -88,7 +88,7 @@ def _say(text: str) -> None:
     console(stderr=True).print(text, style="yellow", soft_wrap=True)
 
 
-class Workers(click.ParamType[int]):
+class Workers(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic from click 8.4 on
     """A number of workers, or ``auto``: one for each core that this process may use."""
 
     name = "number"

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import ctypes
 import io
-import os
-import shutil
-import sys
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
@@ -112,7 +108,7 @@ class Hdf5:
         try:
             import h5py
         except ImportError:
-            raise UsageError("HDF5 files need h5py: pip install 'tactile-graph[hdf5]'") from None
+            raise UsageError('HDF5 files need h5py: pip install "tactile-graph[hdf5]"') from None
         self._written = _Patient(path, "w+")
         self._file = h5py.File(self._written, "w")
         self._file.attrs.update(about)
@@ -151,7 +147,7 @@ class Zarr:
         try:
             import zarr
         except ImportError:
-            raise UsageError("Zarr stores need zarr: pip install 'tactile-graph[zarr]'") from None
+            raise UsageError('Zarr stores need zarr: pip install "tactile-graph[zarr]"') from None
         self._group: Any = zarr.create_group(str(path), attributes=about)
 
     def array(self, name: str, row: tuple[int, ...], cells: Cells, about: dict[str, Any]) -> Any:
@@ -166,29 +162,3 @@ class Zarr:
 
     def close(self) -> None:
         """Do nothing: every chunk is a file of its own."""
-
-
-def put_in_place(part: Path, target: Path) -> None:
-    """Give a file, or a folder, its name, in place of what is there.
-
-    A folder is exchanged with the older one at once where the system can do that; elsewhere there
-    is none of that name between two renames.
-    """
-    if not target.is_dir():
-        os.replace(part, target)
-    elif _exchanged(part, target):
-        shutil.rmtree(part)
-    else:
-        old = target.with_name(f"{part.name}.old")  # a folder that is not empty is not replaced
-        target.rename(old)
-        part.rename(target)
-        shutil.rmtree(old)
-
-
-def _exchanged(one: Path, other: Path) -> bool:
-    """Return whether two names changed places, which Linux alone offers, not on every disc."""
-    exchange = getattr(ctypes.CDLL(None), "renameat2", None) if sys.platform == "linux" else None
-    if exchange is None:
-        return False
-    here, flag = -100, 2  # AT_FDCWD and RENAME_EXCHANGE of renameat2(2)
-    return bool(exchange(here, os.fsencode(one), here, os.fsencode(other), flag) == 0)

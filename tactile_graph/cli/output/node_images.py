@@ -18,14 +18,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tactile_graph.api.result import Result
-from tactile_graph.cli.output.array_files import Cells, Container, Growing, Hdf5, Zarr, put_in_place
+from tactile_graph.cli.output.array_files import Cells, Container, Growing, Hdf5, Zarr
 from tactile_graph.cli.output.older import stays, unfinished_by
 from tactile_graph.draw.display import view
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed
 from tactile_graph.errors import UsageError, one_of
 from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import check_target, left_of, said, uninterrupted
-from tactile_graph.part_files import part_of, remove
+from tactile_graph.part_files import part_of, put_in_place, remove
 from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.wiring import arms
 from tactile_graph.quantities import unit_of
@@ -162,7 +162,7 @@ class ImageStore:
             for stack in self._stacks.values():
                 stack.flush()
             self._container.close()
-            put_in_place(self._part, self._target)
+            put_in_place(self._part, self._target, self.lies_at)
 
     def close_early(self) -> None:
         """Write what is left; older stacks stay, and these get a name beside them."""

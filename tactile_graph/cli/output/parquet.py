@@ -21,14 +21,14 @@ from tactile_graph.engine.tables.table import Table, units_of
 from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer, check_plain
 from tactile_graph.files import left_of, said, uninterrupted
-from tactile_graph.part_files import part_of, remove
+from tactile_graph.part_files import part_of, put_in_place, remove
 
 ROWS_A_GROUP = 10_000
 LARGEST = 2**63
 """Whole numbers in Parquet are below this, and not below its negative."""
 FRAME = "frame"
 """The column of numbers that frames are counted by."""
-MISSING = "Parquet files need pyarrow: pip install 'tactile-graph[parquet]'"
+MISSING = 'Parquet files need pyarrow: pip install "tactile-graph[parquet]"'
 
 
 def pyarrow() -> Any:
@@ -108,7 +108,7 @@ class ParquetFile:
         with self._whole():
             self._writer.close()
             self._correct_units()
-            os.replace(self._part, self._target)
+            put_in_place(self._part, self._target, self.lies_at)
 
     def close_early(self) -> None:
         """Write what is left; an older file stays, and this one gets a name beside it."""
@@ -143,7 +143,7 @@ class ParquetFile:
                 yield
         except BaseException:
             self.broken = True
-            self._part.unlink(missing_ok=True)
+            remove(self._part)
             raise
 
     def _flush(self) -> None:

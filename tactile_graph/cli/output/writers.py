@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import shutil
 import stat
 import sys
 from collections.abc import Iterable, Iterator
@@ -28,6 +27,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph.exporter import Export, Exporter, Writer
 from tactile_graph.files import is_plain, said
 from tactile_graph.foreign_text import csv_line, visible
+from tactile_graph.part_files import put_over
 from tactile_graph.provenance import sidecar
 from tactile_graph.wires.stacks import Column, Stack
 
@@ -203,18 +203,6 @@ def _stdout_for_itself() -> tuple[BinaryIO, bool]:
         return sys.stdout.buffer, False
 
 
-def _put_over(new: Path, older: Path) -> None:
-    """Give a file the name of an older one, or write it into that where it cannot be replaced.
-
-    As where it is another person's in a folder for all, or a program has it open on Windows.
-    """
-    try:
-        os.replace(new, older)
-    except OSError:
-        shutil.copyfile(new, older)
-        new.unlink()
-
-
 class LineFile:
     """A file, or stdout, that takes whole lines; made when the first one comes.
 
@@ -305,7 +293,7 @@ class LineFile:
         if self._older is not None:
             with said(self.output, f"all frames are in {self.lies_at}"):
                 self._older.close()  # Windows replaces no file that is open
-                _put_over(Path(self.lies_at), Path(os.path.realpath(self.output)))
+                put_over(Path(self.lies_at), Path(os.path.realpath(self.output)))
             sidecar(self.lies_at).unlink(missing_ok=True)
             self.lies_at = self.output
 

@@ -106,9 +106,12 @@ def test_a_closed_standard_output_is_refused_before_the_work(tmp_path: Path) -> 
 
 @pytest.mark.slow
 @posix
-@pytest.mark.parametrize("stream", ["2>&-", "<&-"])
-def test_other_streams_may_be_closed(tmp_path: Path, stream: str) -> None:
+@pytest.mark.parametrize(
+    ("stream", "more"), [("2>&-", ()), ("<&-", ()), ("2>&- <&-", ("--workers", "2"))]
+)
+def test_other_streams_may_be_closed(tmp_path: Path, stream: str, more: tuple[str, ...]) -> None:
+    """Processes that share work begin with the lowest numbers that are free."""
     out = tmp_path / "a.jsonl"
-    got = closed(stream, "run", "circle-1", "--frames", "2", "-o", str(out))
+    got = closed(stream, "run", "circle-1", "--frames", "2", "-o", str(out), *more)
     assert got.returncode == 0, got.stderr
     assert [json.loads(line)["frame"] for line in out.read_text().splitlines()] == [0, 1]

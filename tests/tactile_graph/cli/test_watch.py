@@ -72,6 +72,17 @@ def test_a_file_that_is_only_read_is_watched_too(folder: Path) -> None:
     assert not right
 
 
+def test_a_file_on_another_drive_is_told_in_full(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def other_drive(path: str, start: str = "") -> str:
+        raise ValueError("path is on mount 'D:', start on mount 'C:'")
+
+    monkeypatch.setattr(os.path, "relpath", other_drive)
+    looks(folder, [lambda: (folder / "named.yaml").write_text("longer")])
+    assert f"{folder / 'named.yaml'} changed" in capsys.readouterr().out
+
+
 def test_a_file_put_in_the_place_of_another_is_a_save_even_at_the_same_time(folder: Path) -> None:
     def replace() -> None:
         before = (folder / "used.yaml").stat()

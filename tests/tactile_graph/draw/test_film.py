@@ -134,6 +134,19 @@ def test_a_film_that_breaks_off_leaves_the_old_one_and_nothing_else(
     assert old.read_bytes() == b"old"
 
 
+def test_a_film_is_written_into_an_old_one_that_cannot_be_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(*paths: object) -> None:
+        raise PermissionError(13, "Access is denied")
+
+    (tmp_path / "a.gif").write_bytes(b"old")
+    monkeypatch.setattr("os.replace", refused)
+    filmed(discs(1), tmp_path / "a.gif")
+    assert [p.name for p in tmp_path.iterdir()] == ["a.gif"]
+    assert len(pictures(tmp_path / "a.gif")[1]) == 1
+
+
 @pytest.mark.slow
 def test_mp4_repeats_pictures_as_long_as_they_last(tmp_path: Path) -> None:
     library = pytest.importorskip("imageio_ffmpeg", reason="the 'film' extra is not installed")

@@ -50,7 +50,7 @@ def test_without_hypothesis_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.delitem(sys.modules, "tactile_graph.testing.strategies")
     monkeypatch.setattr(builtins, "__import__", missing)
-    with pytest.raises(UsageError, match=r"pip install 'tactile-graph\[test\]'"):
+    with pytest.raises(UsageError, match=r'pip install "tactile-graph\[test\]"'):
         importlib.import_module("tactile_graph.testing.strategies")
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.plugins.registry import installed
 from tactile_graph_compare.variants.one_source import first_source, on_source
 from tactile_graph_compare.variants.prepare import prepare
-from tactile_graph_compare.variants.request import VariantRequest, parse_request, spelled
+from tactile_graph_compare.variants.request import VariantRequest, parse_request, spelled, words_of
 from tactile_graph_compare.variants.sweeps import Sweep, combinations, parse_sweep
 
 
@@ -72,6 +74,15 @@ def test_a_setting_may_be_a_file_as_a_pipeline_may():
     settings = "--set circle.pad=my-pad.yaml --set 'footprint.pad=my pad.yaml'"
     for name in ("locate-circle", "a dir/x y.yaml"):
         assert parse_request(f"{name} {settings}", installed()) == VariantRequest(name, pads)
+
+
+def test_on_windows_a_backslash_stays_within_quotes_and_without(monkeypatch):
+    text = r"circle-1 --set a.b=sub\n.csv --set 'c.d=C:\my mats\' --only hull"
+    words = ["circle-1", "--set", r"a.b=sub\n.csv", "--set", "c.d=C:\\my mats\\", "--only", "hull"]
+    monkeypatch.setattr(os, "name", "nt")
+    assert words_of(text) == words
+    again = spelled("circle-1", {"a.b": r"sub\n.csv", "c.d": "C:\\my mats\\"}, ("hull",))
+    assert words_of(again.strip('"')) == words
 
 
 @pytest.mark.parametrize(

@@ -530,7 +530,7 @@ def test_without_the_extra_it_says_what_to_install(
     monkeypatch.chdir(folder)
     done = call("live", "mine.yaml")
     assert done.exit_code == 2
-    assert "pip install 'tactile-graph[live]'" in done.output
+    assert 'pip install "tactile-graph[live]"' in done.output
 
 
 def test_every_message_is_json_without_nan(shared: Command) -> None:

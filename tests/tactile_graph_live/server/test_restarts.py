@@ -14,7 +14,7 @@ CRASHED = "ended its process by SIGKILL"
 @pytest.fixture
 def now(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     found = [1000.0]
-    monkeypatch.setattr(module.time, "monotonic", lambda: found[0])
+    monkeypatch.setattr(module.time, "perf_counter", lambda: found[0])
     return found
 
 

@@ -67,6 +67,27 @@ def test_a_port_that_may_not_be_opened_says_who_may(monkeypatch: pytest.MonkeyPa
 
 
 @pytest.mark.parametrize(
+    ("within", "told"),
+    [
+        ("PermissionError(13, 'Access is denied.', None, 5)", "another program has it open"),
+        (
+            "FileNotFoundError(2, 'The system cannot find the file specified.', None, 2)",
+            "there is no such port; did you mean 'COM4'?; ports here: COM11, COM4",
+        ),
+        (
+            "OSError(22, 'The semaphore timeout period has expired.', None, 121)",
+            "The semaphore timeout period has expired.; ports here: COM11, COM4",
+        ),
+    ],
+)
+def test_what_pyserial_tells_on_windows_within_its_text_is_understood(
+    within: str, told: str
+) -> None:
+    error = serial.SerialException(f"could not open port 'COM3': {within}")
+    assert refusal("COM3", error, ["COM11", "COM4"]) == f"port 'COM3' cannot be opened: {told}"
+
+
+@pytest.mark.parametrize(
     ("url", "message"),
     [
         ("socket://127.0.0.1:1", "cannot be opened: Connection refused"),

@@ -67,7 +67,7 @@ def _h5py(reading: Reading) -> ModuleType:
     except ImportError:
         raise DataError(
             str(reading.path),
-            "is HDF5, which needs the 'hdf5' extra: pip install 'tactile-graph[hdf5]'",
+            "is HDF5, which needs the 'hdf5' extra: pip install \"tactile-graph[hdf5]\"",
         ) from None
     module: ModuleType = h5py
     return module

@@ -49,7 +49,7 @@ def read_store(reading: Reading) -> Iterator[Frame]:
         import zarr
     except ImportError:
         raise UsageError(
-            "Zarr stores need the 'zarr' extra: pip install 'tactile-graph[zarr]'"
+            "Zarr stores need the 'zarr' extra: pip install \"tactile-graph[zarr]\""
         ) from None
     try:
         group: Any = zarr.open_group(str(reading.path), mode="r")

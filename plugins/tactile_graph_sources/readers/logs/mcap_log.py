@@ -136,7 +136,7 @@ def _topics(reading: Reading) -> dict[str, _Topic]:
                     topic.gap = True
     except ImportError:
         raise DataError(
-            where, "is MCAP, which needs the 'mcap' extra: pip install 'tactile-graph[mcap]'"
+            where, "is MCAP, which needs the 'mcap' extra: pip install \"tactile-graph[mcap]\""
         ) from None
     if lost and not topics:
         raise DataError(where, f"it holds no message that can be read: {lost[0].what}")

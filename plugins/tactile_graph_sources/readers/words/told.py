@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -12,6 +11,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
+from tactile_graph.foreign_text import pasted
 from tactile_graph.pipeline.document import is_plain
 from tactile_graph_sources.readers.words.names import NOTHING_TOLD, ColumnsTold
 
@@ -134,5 +134,5 @@ def as_typed(what: str, sensors: Sequence[str] = ()) -> str:
     sensor = _in_yaml(sensors[0]) if sensors else "…"
     values = {"rows": rows, "columns": columns, "sensor": sensor, **such_as}
     pairs = [f"{s}={values.get(s, '…')}" for s in _SETTINGS if s in asked or s in such_as]
-    typed = [f"--with {shlex.quote(p) if '…' not in p else p}" for p in pairs]
+    typed = [f"--with {pasted(p) if '…' not in p else p}" for p in pairs]
     return f" (as typed: {' '.join(typed)})" if typed else ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -200,6 +201,19 @@ def test_settings_that_would_lose_something_are_left_and_what_to_add_is_shown(
     shown = got.stderr[got.stderr.index("add to it:\n") + len("add to it:\n") :]
     assert json.loads(shown) == {"yaml.schemas": SCHEMAS}
     assert mine.read_text().startswith(LINE)  # the rest is done
+
+
+def test_a_file_on_another_drive_gets_its_schema_and_no_place_in_these_settings(
+    mine: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def other_drive(path: str, start: str = "") -> str:
+        raise ValueError("path is on mount 'D:', start on mount 'C:'")
+
+    monkeypatch.setattr(os.path, "relpath", other_drive)
+    got = call("schema", "--install", str(mine))
+    assert got.exit_code == 0, got.stderr
+    assert mine.read_text() == LINE + MINE
+    assert json.loads(Path(".vscode/settings.json").read_text()) == {"yaml.schemas": {}}
 
 
 @pytest.mark.parametrize(

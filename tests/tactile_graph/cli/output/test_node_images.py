@@ -202,7 +202,7 @@ def test_without_its_library_it_says_what_to_install(
     monkeypatch.setitem(sys.modules, library, None)
     got = call("run", "kept.yaml", "--only", "frame", "-o", name)
     assert got.exit_code == 2
-    assert f"need {library}: pip install 'tactile-graph[" in got.stderr
+    assert f'need {library}: pip install "tactile-graph[' in got.stderr
 
 
 @pytest.mark.parametrize(

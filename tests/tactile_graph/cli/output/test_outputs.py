@@ -220,6 +220,25 @@ def test_an_older_output_that_cannot_be_replaced_is_written_into(
     assert not (tmp_path / "out.unfinished.csv").exists()
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("ending", "library"), [("parquet", "pyarrow"), ("h5", "h5py")])
+def test_no_kind_of_output_is_thrown_away_where_the_older_one_cannot_be_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ending: str, library: str
+) -> None:
+    pytest.importorskip(library)
+
+    def refused(*paths: object) -> None:
+        raise PermissionError(errno.EACCES, "Access is denied")
+
+    name = f"out.{ending}"
+    words = ("run", "discs", "-o", name, *(("--only", "footprint") if ending == "h5" else ()))
+    (tmp_path / name).write_text("older")
+    monkeypatch.setattr(os, "replace", refused)
+    assert call(*words).exit_code == 0
+    assert (tmp_path / name).stat().st_size > 500
+    assert [p for p in tmp_path.iterdir() if "part" in p.name or "new" in p.name] == []
+
+
 def test_who_reads_stdout_to_its_end_waits_for_no_run_that_is_done(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -81,7 +81,7 @@ def test_without_pyarrow_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     done = call("run", "many.yaml", "-o", "out.parquet")
     assert done.exit_code == 2
-    assert "Parquet files need pyarrow: pip install 'tactile-graph[parquet]'" in done.stderr
+    assert 'Parquet files need pyarrow: pip install "tactile-graph[parquet]"' in done.stderr
 
 
 @pytest.mark.parametrize(

@@ -54,7 +54,7 @@ def test_mp4_without_ffmpeg_is_refused_before_the_work(monkeypatch: pytest.Monke
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     done = call("run", "discs", "--plot", "film.mp4")
     assert done.exit_code == 2
-    assert "films in MP4 need imageio-ffmpeg: pip install 'tactile-graph[film]'" in done.stderr
+    assert 'films in MP4 need imageio-ffmpeg: pip install "tactile-graph[film]"' in done.stderr
     assert done.stdout == ""
 
 

@@ -157,6 +157,6 @@ def test_without_the_library_it_says_what_to_install(
     path = group(tmp_path / "a.zarr", 2, p=OBLONG)
     monkeypatch.setitem(sys.modules, "zarr", None)
     with pytest.raises(
-        UsageError, match=r"need the 'zarr' extra: pip install 'tactile-graph\[zarr"
+        UsageError, match=r"need the 'zarr' extra: pip install \"tactile-graph\[zarr"
     ):
         frames_of(path)

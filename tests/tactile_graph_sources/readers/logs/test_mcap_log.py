@@ -375,7 +375,7 @@ def test_without_the_library_it_says_what_to_install(
     path = log(tmp_path / "a.mcap", pad=("json", "Pad", in_json(OBLONG)))
     monkeypatch.setitem(sys.modules, "mcap.records", None)
     with pytest.raises(
-        DataError, match=r"needs the 'mcap' extra: pip install 'tactile-graph\[mcap"
+        DataError, match=r"needs the 'mcap' extra: pip install \"tactile-graph\[mcap"
     ):
         frames_of(path)
 
