@@ -130,8 +130,18 @@ class Decoder:
         )
 
 
+NEAR = 1 / 8
+"""Of a counter's turn: a stamp so near to one of the last two, over the counter's end or not, goes
+on from there; further away is a damaged stamp, a long pause, or a device that started anew."""
+
+
 class DeviceClock:
-    """Turns a wrapping counter of ticks into seconds that only go on."""
+    """Turns a wrapping counter of ticks into seconds that go on where it wraps.
+
+    A stamp lies in the turn of the counter in which it is nearest to one of the last two stamps, so
+    that one that is damaged moves no later one. One that is far from both (`NEAR`) stays in the
+    turn of the last, as after a restart, which begins at 0 again.
+    """
 
     def __init__(self, unit_s: float, modulus: int) -> None:
         self.unit_s = unit_s
@@ -140,19 +150,33 @@ class DeviceClock:
 
     def reset(self) -> None:
         """Start afresh: the device may have started anew."""
-        self._last: int | None = None
-        self._wraps = 0
+        self._last: tuple[float, int] | None = None
+        self._before: tuple[float, int] | None = None
 
     def seconds(self, ticks: NDArray[Any]) -> list[float]:
         """Return the times of consecutive frames."""
         out = []
         for tick in ticks.tolist():
-            # Half a turn back is a wrap; a small step back is the device's own jitter.
-            if self._last is not None and self._last - tick > self.modulus // 2:
-                self._wraps += 1
-            self._last = tick
-            out.append((tick + self._wraps * self.modulus) * self.unit_s)
+            turn = self._turn(tick)
+            self._last, self._before = (tick, turn), self._last
+            out.append((tick + turn * self.modulus) * self.unit_s)
         return out
+
+    def _turn(self, tick: float) -> int:
+        """Return how often the counter had run over at a stamp."""
+        if self._last is None:
+            return 0
+        near = NEAR * self.modulus
+        then, turn = self._last
+        if abs(tick - then) < near:
+            return turn
+        pasts = filter(None, (self._last, self._before))
+        step, nearest = min(
+            (abs(tick + over * self.modulus - then), turn + over)
+            for then, turn in pasts
+            for over in (0, 1, -1)
+        )
+        return nearest if step < near else turn
 
 
 Framer = PacketFramer | ReplyFramer | DelimitedFramer | TextFramer
