@@ -6,12 +6,14 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from helpers_recordings import frames_of
 from tactile_graph import Circle, Frame
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.steps.injected import Report
@@ -279,6 +281,16 @@ def test_doubtful_frames_stay_marked(tmp_path: Path) -> None:
         for i in range(2):
             store.write(Frame.of(np.ones((2, 2)), index=i, doubtful=i == 1))
     assert [f.doubtful for f in read_store(tmp_path / "a.zarr")] == [False, True]
+
+
+def test_frames_keep_the_numbers_that_their_recording_gave_them(tmp_path: Path) -> None:
+    given = [5, None, 2**53 + 1]
+    with StoreWriter(tmp_path / "a.zarr") as store:
+        for frame, number in zip(frames(3), given, strict=True):
+            store.write(replace(frame, own_number=number))
+    assert [f.own_number for f in read_store(tmp_path / "a.zarr")] == given
+    read, _ = frames_of(tmp_path / "a.zarr")
+    assert [f.own_number for f in read] == given
 
 
 def test_a_store_whose_making_was_cut_short_is_made_anew(tmp_path: Path) -> None:

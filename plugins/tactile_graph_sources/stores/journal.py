@@ -39,7 +39,7 @@ class Columns(NamedTuple):
     gap: NDArray[np.bool_]
     doubtful: NDArray[np.bool_]
     notes: tuple[bytes, ...]
-    """JSON of label and truth; empty where there is neither."""
+    """JSON of label, truth and own number; empty where there is none of them."""
 
     @property
     def say_more(self) -> bool:

@@ -257,6 +257,7 @@ class Stored:
             gap=bool(columns.gap[i]),
             doubtful=bool(columns.doubtful[i]),
             label=note.get("label", ""),
+            own_number=note.get("own_number"),
             state_of=note.get("state_of", self._state_of),
         )
 

@@ -17,6 +17,7 @@ from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import put_on_disc, said, uninterrupted, whole_folder
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
+from tactile_graph_sources.readers.words.own_number import counted
 from tactile_graph_sources.readers.words.truth import own_shapes, truth_to_json
 from tactile_graph_sources.stores import journal
 from tactile_graph_sources.stores.layout import (
@@ -349,6 +350,8 @@ def _note(frame: Frame) -> bytes:
         note["state_of"] = frame.state_of
     if frame.truth is not None and not own_shapes(frame.truth):
         note["truth"] = truth_to_json([frame.truth])
+    if (number := counted(frame.own_number)) is not None:
+        note["own_number"] = number
     return json.dumps(note).encode() if note else b""
 
 

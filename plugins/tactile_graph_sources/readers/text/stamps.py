@@ -10,6 +10,7 @@ from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables.layout import Layout
 from tactile_graph_sources.readers.words.compact import HHMMSS
 from tactile_graph_sources.readers.words.dialect import clock_s, floats
+from tactile_graph_sources.readers.words.own_number import number_in
 
 _DAY_S = 86400.0
 _COUNTS = float(1 << 32)
@@ -43,7 +44,7 @@ class Stamps:
         roles = self._layout.roles
         index = None
         if "frame" in roles:
-            index = floats([fields[roles["frame"]]])[0]
+            index = number_in(fields[roles["frame"]])
             if not math.isfinite(index):
                 raise ValueError("the frame's number is no number")
         return index, self.time_s(fields)
