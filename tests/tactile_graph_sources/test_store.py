@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -18,9 +19,13 @@ from tactile_graph import Circle, Frame
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires import TrueObject
+from tactile_graph_sources.inspection.look import look_into
+from tactile_graph_sources.inspection.words import data_of, lines_of
 from tactile_graph_sources.store import read_store
 from tactile_graph_sources.stores import journal
+from tactile_graph_sources.stores.checking import check
 from tactile_graph_sources.stores.layout import is_store
+from tactile_graph_sources.writers import write_store
 from tactile_graph_sources.writers.write_store import StoreWriter
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
@@ -99,6 +104,29 @@ def test_a_recording_is_gone_on_with(tmp_path: Path) -> None:
     expected = np.stack([f.image.values for part in (0, 11) for f in frames(11, first=part)])
     np.testing.assert_array_equal(np.stack([f.image.values for f in read]), expected)
     assert read[11].gap
+
+
+def test_each_session_says_when_it_began(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, given = tmp_path / "a.zarr", frames(12)
+    days = ["2026-03-28T23:59:00+0100", "2026-03-29T08:00:00+0200", "2026-03-30T08:00:00+0200"]
+    for day, some in zip(days, (given[:4], given[4:5], given[5:]), strict=True):
+        monkeypatch.setattr(write_store, "_now", lambda day=day: day)
+        with StoreWriter(path, chunk=3, append=True) as store:
+            for frame in some:
+                store.write(frame)
+    with StoreWriter(path, append=True):
+        pass  # no session without a frame
+    sessions = [{"frame": n, "started": day} for n, day in zip([0, 4, 5], days, strict=True)]
+    kept = json.loads((path / "zarr.json").read_text())["attributes"]
+    assert (kept["started"], kept["sessions"]) == (days[0], sessions)
+    (path / "zarr.json").write_text("{")
+    assert check(path, repair=True).mended
+    assert json.loads((path / "zarr.json").read_text())["attributes"] == kept
+    looked = look_into(path, {})
+    assert data_of(looked)["sessions"] == sessions
+    lines = [*lines_of(looked)]
+    assert "  recorded  2026-03-28 23:59:00 +0100" in lines
+    assert "            2026-03-30 08:00:00 +0200, from frame 5 on" in lines
 
 
 def test_the_arrays_are_what_dask_reads_in_place(tmp_path: Path) -> None:

@@ -32,9 +32,9 @@ from tactile_graph_sources.stores.layout import (
     load_zarr,
     read_metadata,
 )
-from tactile_graph_sources.stores.repairing import adopt, cut, notes_end
+from tactile_graph_sources.stores.repairing import adopt, cut, notes_end, tell_sessions
 from tactile_graph_sources.stores.sole_writer import SoleWriter
-from tactile_graph_sources.stores.stored import UNSURE, Lost, open_stored
+from tactile_graph_sources.stores.stored import UNSURE, Lost, Session, open_stored
 from tactile_graph_sources.writers.recording_writer import OWN_SHAPES, RecordingWriter
 
 CHUNK = 256
@@ -108,6 +108,9 @@ class StoreWriter:
         self._grid: dict[str, Any] = {}
         self._held: list[Frame] = []
         self._marks_gap = False
+        self._sessions: tuple[Session, ...] = ()
+        self._started = ""
+        """When the first frame came by which a store is gone on with; until it is written."""
         self._notes_end = 0
         self._is_new = False
         if self.path.exists() and not append:
@@ -170,6 +173,8 @@ class StoreWriter:
                 self._create(grid)
                 self._held.append(frame)
         elif grid == self._grid:
+            if self.n_frames == self.n_before and not self._is_new:
+                self._started = _now()
             self._held.append(frame)
         else:
             told = f"holds {_said(self._grid)}; this one is {_said(grid)}"
@@ -182,7 +187,7 @@ class StoreWriter:
         attributes = {
             "format": FORMAT,
             "version": VERSION,
-            "started": time.strftime("%Y-%m-%dT%H:%M:%S%z"),
+            "started": _now(),
             **grid,
             **self.about,
         }
@@ -250,6 +255,7 @@ class StoreWriter:
         self._grid = {k: stored.attributes[k] for k in GRID}
         self.chunk = stored.chunk
         self.n_written = stored.n_frames
+        self._sessions = stored.sessions
         try:
             self._notes_end = notes_end(stored)
         except Lost as why:
@@ -302,11 +308,14 @@ class StoreWriter:
         for name in COLUMNS:
             self._write(name, low, rows[name])
         self._put_values_on_disc(low)
-        line = journal.block_line(low, values, columns, self._attributes)
+        line = journal.block_line(low, values, columns, self._attributes, self._started)
         journal.append(self.path, line)
         # Only now: a flush cut short by Ctrl-C is done again, over the same rows, at the end.
         self._held, self._marks_gap = [], False
         self.n_written, self._notes_end = high, int(ends[-1])
+        if self._started:
+            begun, self._started = Session(low, self._started), ""
+            tell_sessions(self.path, [*self._sessions, begun])
 
     def _put_values_on_disc(self, low: int) -> None:
         """Before the journal vouches for them, which has a copy of all the rest."""
@@ -331,6 +340,11 @@ class StoreWriter:
             array = array_of(self.path, name, self._metadata[name], low, "r+")
             array.resize((low + len(rows), *array.shape[1:]))
             array[low:] = rows
+
+
+def _now() -> str:
+    """Return the wall clock's time with its offset from UTC."""
+    return time.strftime("%Y-%m-%dT%H:%M:%S%z")
 
 
 def _damaged(path: Path, what: str) -> UsageError:
