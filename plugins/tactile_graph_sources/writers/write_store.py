@@ -284,11 +284,22 @@ class StoreWriter:
         Raises
         ------
         UsageError
-            If they cannot be written: the disc is full.
+            If they cannot be written: the disc is full, or the store was moved away.
         """
         if self._held:
+            self._check_there()
             with said(self._called):
                 self._put(self._held)
+
+    def _check_there(self) -> None:
+        """Refuse to write where the store is no more: Zarr would make folders of no store there."""
+        if not (self.path / JOURNAL).is_file():
+            n = len(self._held)
+            raise UsageError(
+                f"{self._called} is gone: it was moved away or removed while it was written to; "
+                f"{n} frame{'s' if n != 1 else ''} after its first {self.n_written} "
+                f"{'are' if n != 1 else 'is'} lost"
+            )
 
     def _put(self, frames: list[Frame]) -> None:
         low, high = self.n_written, self.n_written + len(frames)
