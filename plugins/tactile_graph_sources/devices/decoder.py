@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tactile_graph_sources.devices.assembly import BetweenSilences, Pieces, Sequence, Whole
 from tactile_graph_sources.devices.counters import LinkCounts
 from tactile_graph_sources.devices.delimited import DelimitedFramer
+from tactile_graph_sources.devices.device_clock import DeviceClock
 from tactile_graph_sources.devices.geometry import Placement
 from tactile_graph_sources.devices.layout import Layout
 from tactile_graph_sources.devices.packet import PacketFramer
@@ -128,55 +129,6 @@ class Decoder:
             f"values of {known.min():g} to {known.max():g} came, "
             f"the preset allows {self.placement.range or 'finite ones'}"
         )
-
-
-NEAR = 1 / 8
-"""Of a counter's turn: a stamp so near to one of the last two, over the counter's end or not, goes
-on from there; further away is a damaged stamp, a long pause, or a device that started anew."""
-
-
-class DeviceClock:
-    """Turns a wrapping counter of ticks into seconds that go on where it wraps.
-
-    A stamp lies in the turn of the counter in which it is nearest to one of the last two stamps, so
-    that one that is damaged moves no later one. One that is far from both (`NEAR`) stays in the
-    turn of the last, as after a restart, which begins at 0 again.
-    """
-
-    def __init__(self, unit_s: float, modulus: int) -> None:
-        self.unit_s = unit_s
-        self.modulus = modulus
-        self.reset()
-
-    def reset(self) -> None:
-        """Start afresh: the device may have started anew."""
-        self._last: tuple[float, int] | None = None
-        self._before: tuple[float, int] | None = None
-
-    def seconds(self, ticks: NDArray[Any]) -> list[float]:
-        """Return the times of consecutive frames."""
-        out = []
-        for tick in ticks.tolist():
-            turn = self._turn(tick)
-            self._last, self._before = (tick, turn), self._last
-            out.append((tick + turn * self.modulus) * self.unit_s)
-        return out
-
-    def _turn(self, tick: float) -> int:
-        """Return how often the counter had run over at a stamp."""
-        if self._last is None:
-            return 0
-        near = NEAR * self.modulus
-        then, turn = self._last
-        if abs(tick - then) < near:
-            return turn
-        pasts = filter(None, (self._last, self._before))
-        step, nearest = min(
-            (abs(tick + over * self.modulus - then), turn + over)
-            for then, turn in pasts
-            for over in (0, 1, -1)
-        )
-        return nearest if step < near else turn
 
 
 Framer = PacketFramer | ReplyFramer | DelimitedFramer | TextFramer

@@ -483,3 +483,14 @@ def test_frame_numbers_beyond_those_of_a_float_are_told_apart(tmp_path: Path) ->
     assert report.troubles == [
         (f"{path}:5", f"frame {2**53 + 2} comes again; the first one is kept")
     ]
+
+
+def test_a_damaged_stamp_of_a_counter_moves_no_later_time(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    stamps = [4_100_000_000 + 20_000 * k for k in range(12)]
+    stamps[6] %= 1_000_000_000  # its first digit lost
+    lines = [",".join(map(str, [t, *range(k, k + 6)])) for k, t in enumerate(stamps)]
+    path.write_text("\n".join(["micros" + ",v" * 6, *lines]) + "\n")
+    frames, _ = frames_of(path, rows=2, columns=3)
+    times = [f.time_s for f in frames]
+    assert [*times[:6], *times[7:]] == pytest.approx([4100 + 0.02 * k for k in range(12) if k != 6])
