@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from helpers_recordings import frames_of
 from tactile_graph import Circle, Frame
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires import TrueObject
+from tactile_graph_sources.inspection.look import look_into
+from tactile_graph_sources.inspection.words import data_of, lines_of
 from tactile_graph_sources.store import read_store
 from tactile_graph_sources.stores import journal
+from tactile_graph_sources.stores.checking import check
 from tactile_graph_sources.stores.layout import is_store
+from tactile_graph_sources.writers import write_store
 from tactile_graph_sources.writers.write_store import StoreWriter
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
@@ -97,6 +104,29 @@ def test_a_recording_is_gone_on_with(tmp_path: Path) -> None:
     expected = np.stack([f.image.values for part in (0, 11) for f in frames(11, first=part)])
     np.testing.assert_array_equal(np.stack([f.image.values for f in read]), expected)
     assert read[11].gap
+
+
+def test_each_session_says_when_it_began(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, given = tmp_path / "a.zarr", frames(12)
+    days = ["2026-03-28T23:59:00+0100", "2026-03-29T08:00:00+0200", "2026-03-30T08:00:00+0200"]
+    for day, some in zip(days, (given[:4], given[4:5], given[5:]), strict=True):
+        monkeypatch.setattr(write_store, "_now", lambda day=day: day)
+        with StoreWriter(path, chunk=3, append=True) as store:
+            for frame in some:
+                store.write(frame)
+    with StoreWriter(path, append=True):
+        pass  # no session without a frame
+    sessions = [{"frame": n, "started": day} for n, day in zip([0, 4, 5], days, strict=True)]
+    kept = json.loads((path / "zarr.json").read_text())["attributes"]
+    assert (kept["started"], kept["sessions"]) == (days[0], sessions)
+    (path / "zarr.json").write_text("{")
+    assert check(path, repair=True).mended
+    assert json.loads((path / "zarr.json").read_text())["attributes"] == kept
+    looked = look_into(path, {})
+    assert data_of(looked)["sessions"] == sessions
+    lines = [*lines_of(looked)]
+    assert "  recorded  2026-03-28 23:59:00 +0100" in lines
+    assert "            2026-03-30 08:00:00 +0200, from frame 5 on" in lines
 
 
 def test_the_arrays_are_what_dask_reads_in_place(tmp_path: Path) -> None:
@@ -279,6 +309,16 @@ def test_doubtful_frames_stay_marked(tmp_path: Path) -> None:
         for i in range(2):
             store.write(Frame.of(np.ones((2, 2)), index=i, doubtful=i == 1))
     assert [f.doubtful for f in read_store(tmp_path / "a.zarr")] == [False, True]
+
+
+def test_frames_keep_the_numbers_that_their_recording_gave_them(tmp_path: Path) -> None:
+    given = [5, None, 2**53 + 1]
+    with StoreWriter(tmp_path / "a.zarr") as store:
+        for frame, number in zip(frames(3), given, strict=True):
+            store.write(replace(frame, own_number=number))
+    assert [f.own_number for f in read_store(tmp_path / "a.zarr")] == given
+    read, _ = frames_of(tmp_path / "a.zarr")
+    assert [f.own_number for f in read] == given
 
 
 def test_a_store_whose_making_was_cut_short_is_made_anew(tmp_path: Path) -> None:

@@ -185,7 +185,7 @@ class Session:
             return
         recorded = ""
         if self._taking is not None:
-            self._taking.recorder.broken_off()
+            self._taking.broken_off()
             recorded = "; frames that come meanwhile are not recorded, which leaves a gap"
         died = "the process that runs the pipeline died; it is started anew"
         self._tell(died + recorded, "error")
@@ -250,7 +250,7 @@ class Session:
             self.viewers.tell(self._pulse())
 
     def _pulse(self) -> messages.Pulse:
-        state = messages.Recording() if self._taking is None else self._taking.recorder.state
+        state = messages.Recording() if self._taking is None else self._taking.state
         return self._vitals.pulse(len(self.viewers), state, self._gaze.paused)
 
     # -- who looks ---------------------------------------------------------------------------------
@@ -362,7 +362,7 @@ class Session:
         label = visible(label)[:LONGEST_LABEL]
         async with self._recording_changes:
             if self._taking is not None and on:
-                self._taking.recorder.label = label
+                self._taking.label(label)
             elif not on:
                 await self._stop_recording()
             elif not self._closing:
@@ -372,11 +372,17 @@ class Session:
         pipeline = self._editor.now.draft.pipeline
         about = {**_origin(pipeline), "pipeline": pipeline.name}
         failed = lambda what: self._in_loop(self._broken, what)  # noqa: E731
-        recorder = await asyncio.to_thread(
-            Recorder, self._setup.folder, pipeline.name, label, about, failed
-        )
-        self._taking = _Recording(recorder)
-        self._tell_wants()
+        self._taking = taking = _Recording()
+        self._tell_wants()  # at once: to make the first store takes a while
+        try:
+            recorder = await asyncio.to_thread(
+                Recorder, self._setup.folder, pipeline.name, label, about, failed
+            )
+        except Exception:
+            await self._last_frames(taking)
+            self._taking = None
+            raise
+        taking.begin(recorder)
         self._tell(f"recording to {recorder.path}")
 
     async def _write_comparison(self) -> None:
@@ -399,32 +405,68 @@ class Session:
 
     async def _stop_recording(self) -> None:
         taking = self._taking
-        if taking is None:
+        if taking is None or taking.recorder is None:
             return
-        taking.ending = True
-        self._tell_wants()
-        try:
-            await asyncio.wait_for(taking.last.wait(), LAST_FRAMES_S)
-        except TimeoutError:
+        if not await self._last_frames(taking):
             self._tell("the last frames of the recording did not come in time", "warning")
         n = await asyncio.to_thread(taking.recorder.close)
         self._taking = None
         self._tell(f"recorded {_told(taking.recorder, n)}")
 
+    async def _last_frames(self, taking: _Recording) -> bool:
+        """Have no more frames sent, and wait for those on their way; return whether they came."""
+        taking.ending = True
+        self._tell_wants()
+        try:
+            await asyncio.wait_for(taking.last.wait(), LAST_FRAMES_S)
+        except TimeoutError:
+            return False
+        return True
+
 
 class _Recording:
-    """A recording under way, and whether its last frames have come."""
+    """A recording from the moment it is asked for on, and whether its last frames have come.
 
-    def __init__(self, recorder: Recorder) -> None:
-        self.recorder = recorder
+    What comes before its recorder is there waits.
+    """
+
+    def __init__(self) -> None:
+        self.recorder: Recorder | None = None
         self.ending = False
         self.last = asyncio.Event()
+        self._waiting: list[Callable[[Recorder], None]] = []
+
+    @property
+    def state(self) -> messages.Recording:
+        """What the page says of it."""
+        return messages.Recording() if self.recorder is None else self.recorder.state
+
+    def begin(self, recorder: Recorder) -> None:
+        """Have what waited written, and what comes from now on."""
+        self.recorder = recorder
+        for call in self._waiting:
+            call(recorder)
+        self._waiting.clear()
 
     def take(self, taken: wire.Taken) -> None:
         """Write frames."""
-        self.recorder.take(taken.frames, taken.n_lost)
+        self._have(lambda recorder: recorder.take(taken.frames, taken.n_lost))
         if taken.last:
             self.last.set()
+
+    def label(self, label: str) -> None:
+        """Have frames written under another label from now on."""
+        self._have(lambda recorder: setattr(recorder, "label", label))
+
+    def broken_off(self) -> None:
+        """Note that nobody knows how many frames are lost before the next one."""
+        self._have(Recorder.broken_off)
+
+    def _have(self, call: Callable[[Recorder], None]) -> None:
+        if self.recorder is None:
+            self._waiting.append(call)
+        else:
+            call(self.recorder)
 
 
 def _origin(pipeline: Pipeline) -> dict[str, str]:

@@ -189,6 +189,7 @@ class _Carried:
                 ("gaps", frame.gap),
                 ("doubts", frame.doubtful),
                 ("labels", bool(frame.label)),
+                ("own numbers", frame.own_number not in (None, frame.index)),
                 (OWN_SHAPES, bool(own_shapes(frame.truth))),
             ):
                 if there:

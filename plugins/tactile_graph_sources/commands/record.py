@@ -97,6 +97,7 @@ def record(
     from tactile_graph.errors import TactileGraphError, UsageError
     from tactile_graph.steps.injected import Report
     from tactile_graph_sources.commands.captured import captured
+    from tactile_graph_sources.stores.layout import is_store
     from tactile_graph_sources.writers.write_store import StoreWriter
 
     told = {"preset": preset, "baud": baud, "give_up_s": give_up}
@@ -122,10 +123,11 @@ def record(
         finally:
             if isinstance(frames, Generator):
                 frames.close()
-    if store is not None and (failure is None or store.n_written > store.n_before):
+    there = store is not None and is_store(target)  # or it was moved away meanwhile
+    if store is not None and (failure is None or (there and store.n_written > store.n_before)):
         _tell(store, report, by_port=source is None)
     if failure is not None:
-        if isinstance(failure, UsageError) and store is not None and target.exists():
+        if isinstance(failure, UsageError) and there:
             say(f"'record --append {pasted(str(target))}' goes on with it", err=True)
         raise failure
     if ended is not None and (store is None or isinstance(ended, Ended)):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tactile_graph_sources.devices.assembly import BetweenSilences, Pieces, Sequence, Whole
 from tactile_graph_sources.devices.counters import LinkCounts
 from tactile_graph_sources.devices.delimited import DelimitedFramer
+from tactile_graph_sources.devices.device_clock import DeviceClock
 from tactile_graph_sources.devices.geometry import Placement
 from tactile_graph_sources.devices.layout import Layout
 from tactile_graph_sources.devices.packet import PacketFramer
@@ -128,31 +129,6 @@ class Decoder:
             f"values of {known.min():g} to {known.max():g} came, "
             f"the preset allows {self.placement.range or 'finite ones'}"
         )
-
-
-class DeviceClock:
-    """Turns a wrapping counter of ticks into seconds that only go on."""
-
-    def __init__(self, unit_s: float, modulus: int) -> None:
-        self.unit_s = unit_s
-        self.modulus = modulus
-        self.reset()
-
-    def reset(self) -> None:
-        """Start afresh: the device may have started anew."""
-        self._last: int | None = None
-        self._wraps = 0
-
-    def seconds(self, ticks: NDArray[Any]) -> list[float]:
-        """Return the times of consecutive frames."""
-        out = []
-        for tick in ticks.tolist():
-            # Half a turn back is a wrap; a small step back is the device's own jitter.
-            if self._last is not None and self._last - tick > self.modulus // 2:
-                self._wraps += 1
-            self._last = tick
-            out.append((tick + self._wraps * self.modulus) * self.unit_s)
-        return out
 
 
 Framer = PacketFramer | ReplyFramer | DelimitedFramer | TextFramer

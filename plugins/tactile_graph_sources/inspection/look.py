@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from tactile_graph.errors import TactileGraphError
+from tactile_graph.errors import DataError, TactileGraphError
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
 from tactile_graph_sources.inspection.measure import Measured, measure
@@ -16,6 +16,8 @@ from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.words.names import ColumnsTold
 from tactile_graph_sources.readers.words.told import Told
 from tactile_graph_sources.recording import opened
+from tactile_graph_sources.stores.layout import is_store
+from tactile_graph_sources.stores.stored import Session, open_stored
 
 MOST_FRAMES = 2000
 MOST_CELLS = 20_000_000
@@ -56,6 +58,8 @@ class Looked:
         Place and what was wrong there.
     chosen : str
         The sensor that was read of several.
+    sessions : tuple of Session
+        When it was recorded, as far as it says so.
     """
 
     path: Path
@@ -67,6 +71,7 @@ class Looked:
     counts: dict[str, int]
     troubles: tuple[tuple[str, str], ...]
     chosen: str = ""
+    sessions: tuple[Session, ...] = ()
 
     @property
     def pitch_assumed(self) -> bool:
@@ -131,8 +136,25 @@ def look_into(path: Path, settings: Mapping[str, Any]) -> Looked:
     )
     assumed, counts = _told_apart(report.counts)
     return Looked(
-        path, recording.format, recording.why(), n, sensors, assumed, counts, tuple(report.troubles)
+        path,
+        recording.format,
+        recording.why(),
+        n,
+        sensors,
+        assumed,
+        counts,
+        tuple(report.troubles),
+        sessions=_sessions(path),
     )
+
+
+def _sessions(path: Path) -> tuple[Session, ...]:
+    if not is_store(path):
+        return ()
+    try:
+        return open_stored(path).sessions
+    except DataError:  # another's Zarr arrays
+        return ()
 
 
 def _by_shape(

@@ -45,6 +45,7 @@ def data_of(looked: Looked) -> dict[str, Any]:
         "assumed": list(looked.assumed),
         "counts": looked.counts,
         "troubles": [{"where": a, "what": b} for a, b in looked.troubles],
+        "sessions": [session._asdict() for session in looked.sessions],
         "sensors": sensors,
     }
 
@@ -53,6 +54,7 @@ def lines_of(looked: Looked) -> Iterator[str]:
     """Yield what was found in lines for people."""
     yield f"{looked.path}{f', sensor {looked.chosen}' if looked.chosen else ''}"
     yield _line("format", looked.format + (f" ({looked.why})" if looked.why else ""))
+    yield from _recorded(looked)
     for what in looked.assumed:
         yield _line("assumed", what.replace("whose pitch is assumed to be 1 cm", "a pitch of 1 cm"))
     for sensor in looked.sensors:
@@ -103,6 +105,21 @@ def _sensor(sensor: Sensor, looked: Looked) -> Iterator[str]:
         f"{median(n):g} a frame as a rule, {min(n)} to {max(n)}{lasting} (patches of two cells or"
         f" more that rise {_number(measured.contact_level)} {unit} above rest)",
     )
+
+
+def _recorded(looked: Looked) -> Iterator[str]:
+    sessions = looked.sessions
+    for k, (frame, started) in enumerate(sessions[:MOST_TOLD]):
+        since = f", from frame {frame} on" if frame else ""
+        yield _line("" if k else "recorded", _wall_clock(started) + since)
+    if n := len(sessions[MOST_TOLD:]):
+        last = _wall_clock(sessions[-1].started)
+        yield _line("", f"… and {n} more, the last {last}")
+
+
+def _wall_clock(text: str) -> str:
+    """Return an ISO 8601 time as people write it."""
+    return f"{text[:10]} {text[11:19]} {text[19:]}"
 
 
 def _line(name: str, text: str) -> str:

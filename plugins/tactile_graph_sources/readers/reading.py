@@ -18,6 +18,7 @@ from tactile_graph.wires.stacks import ImageStack
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.words.counter import runs_over
 from tactile_graph_sources.readers.words.filled import filling
+from tactile_graph_sources.readers.words.own_number import counted
 from tactile_graph_sources.readers.words.told import Told
 
 FEWEST_COUNTED, BEGUN = 32, 0.1
@@ -218,7 +219,6 @@ class Reading:
         gap = gap or not self._gaps.isdisjoint(("", sensor))
         self._gaps -= {"", sensor}
         label = " ".join(filter(None, (self.label, sensor)))
-        number = None if own_number is None or own_number % 1 else int(own_number)
         frame = Frame(
             image,
             self.index,
@@ -228,7 +228,7 @@ class Reading:
             gap,
             label,
             place=self.place,
-            own_number=number,
+            own_number=counted(own_number),
         )
         self.index += 1
         self.place += 1

@@ -39,7 +39,7 @@ class Columns(NamedTuple):
     gap: NDArray[np.bool_]
     doubtful: NDArray[np.bool_]
     notes: tuple[bytes, ...]
-    """JSON of label and truth; empty where there is neither."""
+    """JSON of label, truth and own number; empty where there is none of them."""
 
     @property
     def say_more(self) -> bool:
@@ -64,6 +64,8 @@ class Block(NamedTuple):
     """Of its line in the journal, in bytes."""
     lost: str = ""
     """Why there is nothing of them, since the store was mended."""
+    started: str = ""
+    """Wall clock at which a session began that went on with the store, in its first block."""
 
 
 class Head(NamedTuple):
@@ -163,10 +165,12 @@ def block_line(
     values: NDArray[np.float64],
     columns: Columns,
     attributes: Mapping[str, Any] | None,
+    started: str = "",
 ) -> bytes:
     """Return the line of a block of frames; ``attributes`` are None where nothing vouches."""
     data = {"rows": [low, low + len(values)], "values": crc_of(values), "columns": packed(columns)}
-    return _line(data if attributes is None else {**data, "attributes": attributes})
+    begun = {"started": started} if started else {}
+    return _line({**data, **begun, **({} if attributes is None else {"attributes": attributes})})
 
 
 def lost_line(low: int, high: int, why: str) -> bytes:
@@ -252,7 +256,10 @@ def _block(
     own = data.get("attributes", attributes)
     if (own != attributes and attributes is not None) or not isinstance(own, dict | None):
         return None
-    return Block(rows[0], rows[1], data["values"], place, lost) if isinstance(lost, str) else None
+    started = data.get("started", "")
+    if not isinstance(lost, str) or not isinstance(started, str):
+        return None
+    return Block(rows[0], rows[1], data["values"], place, lost, started)
 
 
 def _in_order(blocks: Iterable[Block]) -> tuple[Block, ...]:

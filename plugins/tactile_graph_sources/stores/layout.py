@@ -2,9 +2,10 @@
 
 ``values`` (N, rows, columns; NaN where a cell is invalid), ``time_s``, ``device_time_s`` (NaN where
 there is none), ``gap``, ``doubtful``, ``notes_end`` and ``number``; each chunk carries a CRC-32C.
-``notes`` holds JSON (label and truth), of which a frame's ends at ``notes_end``. What holds for all
-frames are the group's attributes. ``number`` is written last of a chunk: rows it does not reach do
-not count. The `journal` then says what was written.
+``notes`` holds JSON (label, truth, own number), of which a frame's ends at ``notes_end``. What
+holds for all frames are the group's attributes; ``started`` is the wall clock at the first frame,
+and ``sessions`` says so of each session where the store was gone on with. ``number`` is written
+last of a chunk: rows it does not reach do not count. The `journal` then says what was written.
 """
 
 from __future__ import annotations

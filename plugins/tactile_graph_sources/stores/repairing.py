@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +23,7 @@ from tactile_graph_sources.stores.layout import (
     read_metadata,
     with_rows,
 )
-from tactile_graph_sources.stores.stored import Lost, Stored, open_stored
+from tactile_graph_sources.stores.stored import Lost, Session, Stored, open_stored
 
 
 def cut(told: Journal) -> None:
@@ -79,12 +81,29 @@ def rewrite_metadata(stored: Stored) -> None:
     own = read_metadata(stored.path, "")
     group = own if own is not None and own.get("node_type") == "group" else {}
     told = group.get("attributes")
-    attributes = {**(told if isinstance(told, dict) else {}), **stored.attributes}
+    attributes = {
+        **(told if isinstance(told, dict) else {}),
+        **stored.attributes,
+        **_told_of(stored.sessions),
+    }
     plain = {"zarr_format": 3, "node_type": "group"}
     _write_json(stored.path, "", {**group, **plain, "attributes": attributes})
     for name, data in stored.metadata.items():
         n = notes_end(stored) if name == NOTES else stored.n_frames
         _write_json(stored.path, name, with_rows(data, n))
+
+
+def tell_sessions(path: Path, sessions: Sequence[Session]) -> None:
+    """Write when each session began among the group's attributes, for those who read with Zarr."""
+    own = read_metadata(path, "")
+    if own is not None and isinstance(own.get("attributes"), dict):
+        _write_json(path, "", {**own, "attributes": {**own["attributes"], **_told_of(sessions)}})
+
+
+def _told_of(sessions: Sequence[Session]) -> dict[str, Any]:
+    """Return the attribute of sessions; none for a single one, of which ``started`` tells."""
+    later = any(one.frame for one in sessions)
+    return {"sessions": [one._asdict() for one in sessions]} if later else {}
 
 
 def _write_json(path: Path, name: str, data: object) -> None:

@@ -67,6 +67,16 @@ class Piece(NamedTuple):
         return f"frames {self.low} to {self.high - 1}"
 
 
+class Session(NamedTuple):
+    """Frames recorded in one go: the first of them, and when that came by the wall clock.
+
+    ``started`` is ISO 8601 with the offset from UTC.
+    """
+
+    frame: int
+    started: str
+
+
 @dataclass(frozen=True)
 class Stored:
     """A store, opened.
@@ -108,6 +118,15 @@ class Stored:
     def chunk(self) -> int:
         """Frames in a chunk of the values."""
         return chunk_of(self.path, self.metadata)
+
+    @property
+    def sessions(self) -> tuple[Session, ...]:
+        """When it was recorded, as far as anybody knows; not when another file was converted."""
+        first = self.attributes.get("started")
+        known = isinstance(first, str) and "converted_from" not in self.attributes
+        begun = [Session(0, str(first))] if known else []
+        blocks = [p.block for p in self.pieces if p.block is not None]
+        return *begun, *(Session(b.low, b.started) for b in blocks if b.started)
 
     def rows(self, name: str, low: int, high: int) -> Any:
         """Return rows of an array; raises Lost."""
@@ -257,6 +276,7 @@ class Stored:
             gap=bool(columns.gap[i]),
             doubtful=bool(columns.doubtful[i]),
             label=note.get("label", ""),
+            own_number=note.get("own_number"),
             state_of=note.get("state_of", self._state_of),
         )
 

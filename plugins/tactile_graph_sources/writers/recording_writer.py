@@ -23,8 +23,8 @@ class RecordingWriter(NamedTuple):
         Raises `DataError` for frames that have no place in it, `UsageError` if it cannot write.
     loses : tuple of str
         What of a frame has no place in it: ``"truth"``, ``"device time"``, ``"gaps"``,
-        ``"doubts"``, ``"labels"``; `OWN_SHAPES` where other truth has: of a frame with such a shape
-        none is written.
+        ``"doubts"``, ``"labels"``, ``"own numbers"``; `OWN_SHAPES` where other truth has: of a
+        frame with such a shape none is written.
     """
 
     write: Callable[[Path, Iterator[Frame], str], int]

@@ -16,9 +16,10 @@ from tactile_graph_sources.writers.recording_writer import RecordingWriter
 def write_csv(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
     """Return the number of frames written to ``path``, which appears whole or not at all.
 
-    The table keeps values, frame numbers and times (where the first frame has one), and says
-    shape, pitch, origin and quantity in a comment, which `recording` reads back; cells that are
-    not valid become ``nan``. Truth, device time, gaps and doubts have no place in it.
+    The table keeps values and times (where the first frame has one), and says shape, pitch, origin
+    and quantity in a comment, which `recording` reads back; cells that are not valid become
+    ``nan``. Frames are numbered from 0; truth, device time, gaps, doubts, labels and own numbers
+    have no place in it.
 
     Parameters
     ----------
@@ -74,5 +75,5 @@ def _line(path: Path, frame: Frame, n: int, first: Frame) -> str:
 
 WRITER = RecordingWriter(
     lambda path, frames, about: write_csv(path, frames),
-    loses=("truth", "device time", "gaps", "doubts", "labels"),
+    loses=("truth", "device time", "gaps", "doubts", "labels", "own numbers"),
 )

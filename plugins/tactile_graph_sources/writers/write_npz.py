@@ -10,6 +10,7 @@ import numpy as np
 
 from tactile_graph.files import whole_file
 from tactile_graph.wires import Frame
+from tactile_graph_sources.readers.words.own_number import NO_NUMBER, counted
 from tactile_graph_sources.readers.words.truth import own_shapes, truth_to_json
 from tactile_graph_sources.writers.recording_writer import OWN_SHAPES, RecordingWriter
 
@@ -35,9 +36,10 @@ def write_npz(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
     -----
     Arrays: ``values`` (N, rows, columns), ``pitch_cm`` (2,), ``origin_cm`` (2,), ``quantity``;
     where a frame has them ``valid`` (N, rows, columns), ``time_s``, ``device_time_s``, ``gap``,
-    ``doubtful``, ``label``, ``state_of`` (N,), and ``truth``, a JSON text: for each frame null or
-    a list of objects with ``kind``, the fields of that shape, ``weight_g`` and ``name``. A frame's
-    truth is left out if it has a shape of a plugin's own.
+    ``doubtful``, ``label``, ``state_of``, ``own_number`` (N,; the least number of 64 bits where a
+    frame has none), and ``truth``, a JSON text: for each frame null or a list of objects with
+    ``kind``, the fields of that shape, ``weight_g`` and ``name``. A frame's truth is left out if it
+    has a shape of a plugin's own.
     """
     arrays = _arrays(list(frames))
     with whole_file(path) as file:
@@ -85,6 +87,10 @@ def _arrays(frames: list[Frame]) -> dict[str, Any]:
     if any(f.state_of is not None for f in frames):
         whose = [f.label if f.state_of is None else f.state_of for f in frames]
         arrays["state_of"] = np.array(whose)
+    numbers = [counted(f.own_number) for f in frames]
+    if any(n is not None for n in numbers):
+        told = [NO_NUMBER if n is None else n for n in numbers]
+        arrays["own_number"] = np.array(told, dtype=np.int64)
     truths = [None if own_shapes(f.truth) else f.truth for f in frames]
     if any(truth is not None for truth in truths):
         arrays["truth"] = np.array(truth_to_json(truths))

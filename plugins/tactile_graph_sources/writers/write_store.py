@@ -17,6 +17,7 @@ from tactile_graph.files import put_on_disc, said, uninterrupted, whole_folder
 from tactile_graph.foreign_text import pasted
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
+from tactile_graph_sources.readers.words.own_number import counted
 from tactile_graph_sources.readers.words.truth import own_shapes, truth_to_json
 from tactile_graph_sources.stores import journal
 from tactile_graph_sources.stores.layout import (
@@ -31,9 +32,9 @@ from tactile_graph_sources.stores.layout import (
     load_zarr,
     read_metadata,
 )
-from tactile_graph_sources.stores.repairing import adopt, cut, notes_end
+from tactile_graph_sources.stores.repairing import adopt, cut, notes_end, tell_sessions
 from tactile_graph_sources.stores.sole_writer import SoleWriter
-from tactile_graph_sources.stores.stored import UNSURE, Lost, open_stored
+from tactile_graph_sources.stores.stored import UNSURE, Lost, Session, open_stored
 from tactile_graph_sources.writers.recording_writer import OWN_SHAPES, RecordingWriter
 
 CHUNK = 256
@@ -107,6 +108,9 @@ class StoreWriter:
         self._grid: dict[str, Any] = {}
         self._held: list[Frame] = []
         self._marks_gap = False
+        self._sessions: tuple[Session, ...] = ()
+        self._started = ""
+        """When the first frame came by which a store is gone on with; until it is written."""
         self._notes_end = 0
         self._is_new = False
         if self.path.exists() and not append:
@@ -169,6 +173,8 @@ class StoreWriter:
                 self._create(grid)
                 self._held.append(frame)
         elif grid == self._grid:
+            if self.n_frames == self.n_before and not self._is_new:
+                self._started = _now()
             self._held.append(frame)
         else:
             told = f"holds {_said(self._grid)}; this one is {_said(grid)}"
@@ -181,7 +187,7 @@ class StoreWriter:
         attributes = {
             "format": FORMAT,
             "version": VERSION,
-            "started": time.strftime("%Y-%m-%dT%H:%M:%S%z"),
+            "started": _now(),
             **grid,
             **self.about,
         }
@@ -249,6 +255,7 @@ class StoreWriter:
         self._grid = {k: stored.attributes[k] for k in GRID}
         self.chunk = stored.chunk
         self.n_written = stored.n_frames
+        self._sessions = stored.sessions
         try:
             self._notes_end = notes_end(stored)
         except Lost as why:
@@ -277,11 +284,22 @@ class StoreWriter:
         Raises
         ------
         UsageError
-            If they cannot be written: the disc is full.
+            If they cannot be written: the disc is full, or the store was moved away.
         """
         if self._held:
+            self._check_there()
             with said(self._called):
                 self._put(self._held)
+
+    def _check_there(self) -> None:
+        """Refuse to write where the store is no more: Zarr would make folders of no store there."""
+        if not (self.path / JOURNAL).is_file():
+            n = len(self._held)
+            raise UsageError(
+                f"{self._called} is gone: it was moved away or removed while it was written to; "
+                f"{n} frame{'s' if n != 1 else ''} after its first {self.n_written} "
+                f"{'are' if n != 1 else 'is'} lost"
+            )
 
     def _put(self, frames: list[Frame]) -> None:
         low, high = self.n_written, self.n_written + len(frames)
@@ -301,11 +319,14 @@ class StoreWriter:
         for name in COLUMNS:
             self._write(name, low, rows[name])
         self._put_values_on_disc(low)
-        line = journal.block_line(low, values, columns, self._attributes)
+        line = journal.block_line(low, values, columns, self._attributes, self._started)
         journal.append(self.path, line)
         # Only now: a flush cut short by Ctrl-C is done again, over the same rows, at the end.
         self._held, self._marks_gap = [], False
         self.n_written, self._notes_end = high, int(ends[-1])
+        if self._started:
+            begun, self._started = Session(low, self._started), ""
+            tell_sessions(self.path, [*self._sessions, begun])
 
     def _put_values_on_disc(self, low: int) -> None:
         """Before the journal vouches for them, which has a copy of all the rest."""
@@ -332,6 +353,11 @@ class StoreWriter:
             array[low:] = rows
 
 
+def _now() -> str:
+    """Return the wall clock's time with its offset from UTC."""
+    return time.strftime("%Y-%m-%dT%H:%M:%S%z")
+
+
 def _damaged(path: Path, what: str) -> UsageError:
     command = f"tactile-graph check --repair {pasted(str(path))}"
     return UsageError(f"{path}: {what}; '{command}' may mend it")
@@ -349,6 +375,8 @@ def _note(frame: Frame) -> bytes:
         note["state_of"] = frame.state_of
     if frame.truth is not None and not own_shapes(frame.truth):
         note["truth"] = truth_to_json([frame.truth])
+    if (number := counted(frame.own_number)) is not None:
+        note["own_number"] = number
     return json.dumps(note).encode() if note else b""
 
 

@@ -214,6 +214,20 @@ def test_a_recording_holds_every_frame_with_its_label(shared: Command, shared_fo
     assert frames[0].truth is not None
 
 
+def test_a_recording_begins_with_its_key_press(command: Command) -> None:
+    """To make the first store of a session takes longer than this recording lasts."""
+    pytest.importorskip("zarr", reason="the zarr extra is not installed")
+    with Page(command) as page:
+        page.until("frame")
+        page.ask("record", on=True)
+        first = page.until("frame")["index"]
+        while page.until("frame")["index"] < first + 8:
+            pass
+        page.ask("record", on=False)
+        told = page.told("recorded")["text"]
+    assert int(told.replace("no frame", "0").split()[1]) >= 4
+
+
 def test_a_recording_that_is_ended_before_it_has_begun_ends(
     shared: Command, shared_folder: Path
 ) -> None:

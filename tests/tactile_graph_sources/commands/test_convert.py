@@ -281,6 +281,20 @@ def test_truth_stays_with_its_frame_where_one_is_left_out(tmp_path: Path) -> Non
     assert [s.x_cm for s in shapes if isinstance(s, Circle)] == [2, 4, 5, 6, 7]
 
 
+@pytest.mark.parametrize("kept", ["b.zarr", "b.npz"])
+def test_truth_by_a_recordings_own_numbers_is_found_after_it_was_converted(
+    tmp_path: Path, kept: str
+) -> None:
+    lines = [",".join(map(str, [5 + k, *(k + c for c in range(15))])) for k in range(6)]
+    (tmp_path / "a.csv").write_text("\n".join(["frame" + ",v" * 15, *lines]) + "\n")
+    run(tmp_path / "a.csv", tmp_path / kept, "--rows", 3, "--columns", 5)
+    (tmp_path / "truth.csv").write_text("numbers,kind,x_cm,y_cm,radius_cm\n7,circle,1,2,0.5\n")
+    run(tmp_path / kept, tmp_path / "c.npz", "--truth", tmp_path / "truth.csv")
+    read = list(recording(path=tmp_path / "c.npz", report=Report()))
+    assert [f.own_number for f in read if f.truth] == [7]
+    assert "no place for it: own numbers" in run(tmp_path / kept, tmp_path / "d.csv")
+
+
 def test_truth_that_replaces_another_is_told(tmp_path: Path) -> None:
     frames = [
         Frame.of(

@@ -226,6 +226,28 @@ def test_a_full_disc_is_told_with_the_store_and_what_is_in_it(
     assert len(list(read_store(tmp_path / "a.zarr"))) == 8
 
 
+def test_a_store_that_was_moved_away_leaves_nothing_in_its_place(
+    tmp_path: Path, pad: FakePad, sends, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _, data = encoded(12)
+    target, real = tmp_path / "a.zarr", StoreWriter.flush
+
+    def flush(self: StoreWriter) -> None:
+        if self.n_written and target.exists():
+            target.rename(tmp_path / "b.zarr")
+        real(self)
+
+    monkeypatch.setattr(StoreWriter, "flush", flush)
+    sends(data)
+    result = run(pad, target, "--chunk", 8, "--frames", 12)
+    assert result.exit_code == 2
+    assert "goes on with it" not in result.output
+    assert "a.zarr is gone: it was moved away" in result.output
+    assert "4 frames after its first 8 are lost" in result.output
+    assert [path.name for path in tmp_path.glob("*.zarr")] == ["b.zarr"]
+    assert len(list(read_store(tmp_path / "b.zarr"))) == 8
+
+
 def test_a_name_of_a_file_is_refused_before_the_port_is_opened(tmp_path: Path) -> None:
     args = ["record", "a.npz", "--port", "/dev/no", "--preset", KIT.preset]
     result = CliRunner().invoke(cli, args)

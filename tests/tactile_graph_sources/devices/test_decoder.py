@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tracemalloc
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers_serial import KITS, Kit, Pad, chunks
-from tactile_graph_sources.devices.decoder import Decoded, Decoder, DeviceClock
+from tactile_graph_sources.devices.decoder import Decoded, Decoder
+from tactile_graph_sources.devices.device_clock import DeviceClock
 from tactile_graph_sources.devices.preset import Preset
 from tactile_graph_sources.devices.preset_file import load_preset
 
@@ -575,3 +577,47 @@ def test_the_devices_clock_goes_on_when_its_counter_wraps() -> None:
     clock = DeviceClock(1e-6, 2**32)
     ticks = np.array([2**32 - 2000, 2**32 - 1000, 0, 1000])
     assert np.diff(clock.seconds(ticks)) == pytest.approx([1e-3] * 3)
+
+
+TURN = 2**32
+
+
+def clocked(*ticks: int) -> list[int]:
+    """Return the ticks that a counter of 32 bits is taken to have gone in all."""
+    return [round(s) for s in DeviceClock(1.0, TURN).seconds(np.array(ticks))]
+
+
+steps_of_a_device = st.lists(st.integers(-100, TURN // 40), min_size=3, max_size=60)
+
+
+@given(st.integers(10_000, TURN - 1), steps_of_a_device, st.data())
+def test_a_damaged_stamp_moves_no_later_one(first: int, steps: list[int], data: Any) -> None:
+    true = first + np.cumsum([0, *steps])
+    k = data.draw(st.integers(1, len(steps) - 1))
+    sent = true % TURN
+    sent[k] = data.draw(st.integers(0, TURN - 1))
+    got = clocked(*sent)
+    assert [*got[:k], *got[k + 1 :]] == [*np.delete(true, k)]
+
+
+@pytest.mark.parametrize(
+    ("ticks", "expected"),
+    [
+        # A digit lost; the frames that come later keep their time.
+        ([3_000_000_000, 10_000, 3_000_020_000], [3_000_000_000, 10_000, 3_000_020_000]),
+        # Started anew: from 70 % of the range a wrap would be a pause of 21 minutes.
+        ([3_005_990_000, 0, 10_000, 20_000], [3_005_990_000, 0, 10_000, 20_000]),
+        ([100_010_000, 0, 10_000, 20_000], [100_010_000, 0, 10_000, 20_000]),
+        # A small step back over the counter's end.
+        ([TURN - 7296, 10, TURN - 6, 20_000], [TURN - 7296, TURN + 10, TURN - 6, TURN + 20_000]),
+        ([TURN - 9, 5, 9, TURN - 4, 15], [TURN - 9, TURN + 5, TURN + 9, TURN - 4, TURN + 15]),
+        ([10, 20, 5, 15, TURN - 1, 3], [10, 20, 5, 15, TURN - 1, 3]),
+        # Asleep for 40 and for 67 minutes.
+        ([100, 2_400_000_000, 2_400_010_000], [100, 2_400_000_000, 2_400_010_000]),
+        ([100, 4_020_000_000, 4_020_010_000], [100, 4_020_000_000, 4_020_010_000]),
+        # Microseconds since 1970 are no counter of 32 bits.
+        ([17 * 10**14, 17 * 10**14 + 4_300_000_000], [17 * 10**14, 17 * 10**14 + 4_300_000_000]),
+    ],
+)
+def test_a_device_clock_goes_on_from_a_stamp_before(ticks: list[int], expected: list[int]) -> None:
+    assert clocked(*ticks) == expected

@@ -39,6 +39,7 @@ def film(n: int = 4) -> list[Frame]:
                 k == 3,
                 "left" if k else "",
                 k == 2,
+                own_number=None if k == 2 else 2**53 + k,
             )
         )
     return frames
@@ -63,7 +64,7 @@ def test_frames_come_back_with_everything_they_had(tmp_path: Path) -> None:
         np.testing.assert_array_equal(got.image.filled(-1.0), put.image.filled(-1.0))
         for name in ("pitch_cm", "origin_cm", "quantity"):
             assert getattr(got.image, name) == getattr(put.image, name)
-        for name in ("index", "time_s", "device_time_s", "gap", "label", "doubtful"):
+        for name in ("index", "time_s", "device_time_s", "gap", "label", "doubtful", "own_number"):
             assert getattr(got, name) == getattr(put, name)
         assert (got.truth is None) == (put.truth is None)
         assert all(map(same, got.truth or (), put.truth or ()))

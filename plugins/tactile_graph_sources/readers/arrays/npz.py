@@ -33,6 +33,7 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
+from tactile_graph_sources.readers.words.own_number import NO_NUMBER
 from tactile_graph_sources.readers.words.preamble import described_by
 from tactile_graph_sources.readers.words.truth import Truth, truth_from_json
 
@@ -44,8 +45,8 @@ WORTH_MAPPING = 1_000_000
 """Bytes of an array, stored as it is, from which on it is mapped, not read."""
 _UNPACK = "unpack it, and give those that are recordings"
 OURS = ("values", "valid", "time_s", "device_time_s", "gap", "doubtful", "label", "state_of",
-        "quantity",
-        "pitch_cm", "origin_cm", "truth")  # fmt: skip
+        "own_number",
+        "quantity", "pitch_cm", "origin_cm", "truth")  # fmt: skip
 
 
 def recognises(head: Head) -> bool:
@@ -345,6 +346,7 @@ class _Ours(NamedTuple):
     doubtful: NDArray[Any] | None
     labels: NDArray[Any] | None
     states: NDArray[Any] | None
+    numbers: NDArray[Any] | None
     truths: list[Truth] | None
 
     @property
@@ -369,13 +371,15 @@ def _ours(reading: Reading, arrays: Archive) -> _Ours:
     doubtful = arrays.optional("doubtful", (n,), "b")
     labels = arrays.optional("label", (n,), "U")
     states = arrays.optional("state_of", (n,), "U")
+    numbers = arrays.optional("own_number", (n,), "iu")
     quantity = str(q) if (q := arrays.optional("quantity", (), "U")) is not None else "raw"
     if unknown := unknown_quantity([quantity]):
         raise DataError(arrays.where, unknown)
     pitch, origin = _pair(arrays, "pitch_cm", 0.0), _pair(arrays, "origin_cm", -np.inf)
     truths = _truths(reading, arrays, n)
     grid = {"pitch_cm": pitch, "origin_cm": origin, "quantity": quantity}
-    return _Ours(values, times, grid, valid, device_times, gaps, doubtful, labels, states, truths)
+    marks = (gaps, doubtful, labels, states, numbers)
+    return _Ours(values, times, grid, valid, device_times, *marks, truths)
 
 
 def _frames_alone(ours: _Ours, reading: Reading, low: int, high: int) -> Iterator[Any]:
@@ -399,6 +403,7 @@ def _frames_alone(ours: _Ours, reading: Reading, low: int, high: int) -> Iterato
                 truth=None if ours.truths is None else ours.truths[k],
                 device_time_s=_time(ours.device_times, k),
                 gap=gaps is not None and bool(gaps[k]),
+                own_number=_number(ours.numbers, k),
             )
             frame = reading.of_state(frame, None if ours.states is None else str(ours.states[k]))
             unsure = doubtful is not None and bool(doubtful[k])
@@ -407,6 +412,10 @@ def _frames_alone(ours: _Ours, reading: Reading, low: int, high: int) -> Iterato
 
 def _time(times: NDArray[Any] | None, k: int) -> float | None:
     return float(times[k]) if times is not None and np.isfinite(times[k]) else None
+
+
+def _number(numbers: NDArray[Any] | None, k: int) -> int | None:
+    return int(numbers[k]) if numbers is not None and numbers[k] != NO_NUMBER else None
 
 
 def _truths(reading: Reading, arrays: Archive, n: int) -> list[Truth] | None:

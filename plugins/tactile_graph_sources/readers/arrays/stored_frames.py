@@ -59,6 +59,7 @@ def as_told(reading: Reading, frames: Iterable[Frame | FrameStack]) -> Iterator[
             truth=stored.truth,
             device_time_s=stored.device_time_s,
             gap=stored.gap,
+            own_number=stored.own_number,
         )
         frame = reading.of_state(frame, stored.state_of)
         yield replace(frame, doubtful=True) if stored.doubtful else frame

@@ -21,6 +21,7 @@ from tactile_graph_sources.readers.tables.layout import Layout, of_sensor, refus
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 from tactile_graph_sources.readers.text.stamps import Stamps
 from tactile_graph_sources.readers.words.dialect import floats, is_row, refuse_underscore
+from tactile_graph_sources.readers.words.own_number import number_text
 from tactile_graph_sources.readers.words.told import Told
 
 _OWN = re.compile(
@@ -130,7 +131,7 @@ def _frame(reading: Reading, lines: _Lines, number: int, line: str) -> Frame | N
         # Words among the frames are what a device had to say, and no frame.
         reading.damaged(number, str(error), n_frames=int(is_row(line)))
         return None
-    if index is not None and reading.is_repeat(number, index, f"frame {index:g}"):
+    if index is not None and reading.is_repeat(number, index, f"frame {number_text(index)}"):
         return None
     said = layout.said
     return reading.frame(

@@ -18,6 +18,7 @@ from tactile_graph_sources.readers.tables.layout import Layout, of_sensor, refus
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 from tactile_graph_sources.readers.text.stamps import Stamps
 from tactile_graph_sources.readers.words.dialect import floats, refuse_underscore
+from tactile_graph_sources.readers.words.own_number import number_text
 
 Cells = NDArray[np.float64]
 _LARGEST = 1e6
@@ -76,7 +77,8 @@ def read(reading: Reading) -> Iterator[Frame]:
         mine = order[ends[k - 1] if k else 0 : ends[k]]
         place = (row[mine] - first) * columns + column[mine] - first
         on_grid = (row[mine] < rows + first) & (column[mine] < columns + first)
-        kept = _first_of_each(reading, f"frame {numbers[k]:g}", place, on_grid, lines[mine])
+        name = f"frame {number_text(numbers[k])}"
+        kept = _first_of_each(reading, name, place, on_grid, lines[mine])
         values = np.full(rows * columns, left_out)
         values[place[kept]] = cells[mine[kept], 4]
         time_s = cells[mine[0], 1]

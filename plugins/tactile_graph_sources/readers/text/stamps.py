@@ -6,13 +6,15 @@ import math
 from collections.abc import Sequence
 from datetime import datetime
 
+from tactile_graph_sources.devices.device_clock import DeviceClock
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables.layout import Layout
 from tactile_graph_sources.readers.words.compact import HHMMSS
 from tactile_graph_sources.readers.words.dialect import clock_s, floats
+from tactile_graph_sources.readers.words.own_number import number_in
 
 _DAY_S = 86400.0
-_COUNTS = float(1 << 32)
+_COUNTS = 1 << 32
 
 
 class Stamps:
@@ -29,8 +31,7 @@ class Stamps:
         self._last = -math.inf
         self._days = 0.0
         self._start = reading.start
-        self._last_count = -math.inf
-        self._runs = 0
+        self._counter = DeviceClock(1.0, _COUNTS)
 
     def of(self, fields: Sequence[str]) -> tuple[float | None, float | None]:
         """Return the number and the time (s) of a frame; None where there is none.
@@ -43,7 +44,7 @@ class Stamps:
         roles = self._layout.roles
         index = None
         if "frame" in roles:
-            index = floats([fields[roles["frame"]]])[0]
+            index = number_in(fields[roles["frame"]])
             if not math.isfinite(index):
                 raise ValueError("the frame's number is no number")
         return index, self.time_s(fields)
@@ -67,11 +68,7 @@ class Stamps:
 
     def _run_on(self, time: float) -> float:
         """Return a time in counts as if micros() and the like did not begin anew at 2^32."""
-        over = self._last_count - time > 0.9 * _COUNTS and self._last_count < _COUNTS
-        if over and self._layout.time_factor <= 1e-3:
-            self._runs += 1
-        self._last_count = time
-        return time + self._runs * _COUNTS
+        return self._counter.run_on(time) if self._layout.time_factor <= 1e-3 else time
 
     def _clock(self, text: str) -> float:
         given = self._layout.time_format

@@ -496,3 +496,26 @@ def moving(n: int, rows: int, columns: int) -> np.ndarray:
     noise = np.random.default_rng(0).normal(20, 1, (n, rows, columns))
     apart = [(y - rows / 4 - 0.2 * k) ** 2 + (x - columns / 1.6 + 0.3 * k) ** 2 for k in range(n)]
     return np.round(noise + 800 * np.exp(-np.array(apart) / 9))
+
+
+def test_frame_numbers_beyond_those_of_a_float_are_told_apart(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    numbers = [2**53 + k for k in (0, 1, 2, 2, 3)]
+    lines = [",".join(map(str, [n, *range(k, k + 6)])) for k, n in enumerate(numbers)]
+    path.write_text("\n".join(["frame" + ",v" * 6, *lines]) + "\n")
+    frames, report = frames_of(path, rows=2, columns=3)
+    assert [f.own_number for f in frames] == [2**53 + k for k in range(4)]
+    assert report.troubles == [
+        (f"{path}:5", f"frame {2**53 + 2} comes again; the first one is kept")
+    ]
+
+
+def test_a_damaged_stamp_of_a_counter_moves_no_later_time(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    stamps = [4_100_000_000 + 20_000 * k for k in range(12)]
+    stamps[6] %= 1_000_000_000  # its first digit lost
+    lines = [",".join(map(str, [t, *range(k, k + 6)])) for k, t in enumerate(stamps)]
+    path.write_text("\n".join(["micros" + ",v" * 6, *lines]) + "\n")
+    frames, _ = frames_of(path, rows=2, columns=3)
+    times = [f.time_s for f in frames]
+    assert [*times[:6], *times[7:]] == pytest.approx([4100 + 0.02 * k for k in range(12) if k != 6])
