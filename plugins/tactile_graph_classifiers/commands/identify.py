@@ -173,13 +173,16 @@ class _Lines:
 
     def told(self, identity: Identity, true: str, note: str = "") -> str:
         """Count an answer, and return it as a line."""
+        from tactile_graph_classifiers.database.names import plain_name
+
         self.counts[identity.name] += 1
         if not identity.known:
             note = f"nearest: {identity.nearest}, accepted up to {identity.limit:.3g} {note}"
         if true:
             self.n_true += 1
-            self.n_right += true == identity.name
-            note += "" if true == identity.name else f" (truly {true})"
+            right = plain_name(true) == plain_name(identity.name)
+            self.n_right += right
+            note += "" if right else f" (truly {true})"
         number, margin = f"{identity.distance:.3g}", f"{identity.margin:.3f}"
         note = " ".join(note.split())
         return _line(identity.name, number, identity.runner_up or "-", margin, note)
