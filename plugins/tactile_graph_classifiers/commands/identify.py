@@ -177,7 +177,8 @@ class _Lines:
 
         self.counts[identity.name] += 1
         if not identity.known:
-            note = f"nearest: {identity.nearest}, accepted up to {identity.limit:.3g} {note}"
+            note = f"nearest: {identity.nearest}, accepted up to {identity.limit:.3g} {note} "
+            note += f"; {identity.note}" if identity.note else ""
         if true:
             self.n_true += 1
             right = plain_name(true) == plain_name(identity.name)

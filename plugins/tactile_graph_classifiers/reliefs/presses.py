@@ -70,13 +70,13 @@ class Presses(NamedTuple):
         """Return the sum of each."""
         return np.asarray(np.maximum(self.values, 0.0).sum(axis=(1, 2)))
 
-    def cut(self) -> NDArray[np.bool_]:
-        """Return which reach the edge of the pad."""
+    def cut(self, share: float = EDGE) -> NDArray[np.bool_]:
+        """Return which reach the edge of the pad, by a share of their highest reading."""
         v = self.values
         rim = np.maximum.reduce(
             [v[:, 0].max(1), v[:, -1].max(1), v[:, :, 0].max(1), v[:, :, -1].max(1)]
         )
-        return np.asarray(rim > EDGE * v.max(axis=(1, 2)))
+        return np.asarray(rim > share * v.max(axis=(1, 2)))
 
 
 def _press(image: Array, full_scale: float) -> tuple[Array, NDArray[np.bool_], list[int], Array]:
