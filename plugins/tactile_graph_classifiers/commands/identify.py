@@ -127,14 +127,17 @@ def _named(result: Result, node: str) -> Any:
 
     Raises
     ------
-    OtherQuantityError
-        If the frame is in another unit than the objects were learned in.
+    OtherQuantityError, OtherPadError
+        If the frame is in another unit than the objects were learned in, or of another pad than
+        the one that their reliefs were learned on.
     """
     from tactile_graph.engine.outcomes.outcome import Failed
-    from tactile_graph_classifiers.database.known import OtherQuantityError
+    from tactile_graph_classifiers.database.known import OtherPadError, OtherQuantityError
 
     outcome: Any = result.outcome(node)
-    if isinstance(outcome, Failed) and isinstance(outcome.error, OtherQuantityError):
+    if isinstance(outcome, Failed) and isinstance(
+        outcome.error, OtherPadError | OtherQuantityError
+    ):
         raise outcome.error  # no other frame of these recordings would fare better
     return outcome
 
@@ -153,8 +156,8 @@ class _Lines:
 
         Raises
         ------
-        OtherQuantityError
-            If it is in another unit than the objects were learned in.
+        OtherQuantityError, OtherPadError
+            As `_named`.
         """
         from tactile_graph.engine.outcomes.outcome import Failed, Skipped
         from tactile_graph_classifiers.measuring.shapes import true_name
@@ -234,8 +237,8 @@ class _Together(_Lines):
 
         Raises
         ------
-        OtherQuantityError
-            If it is in another unit than the objects were learned in.
+        OtherQuantityError, OtherPadError
+            As `_named`.
         """
         from tactile_graph.engine.outcomes.outcome import Failed, Skipped
         from tactile_graph_classifiers.measuring.shapes import true_name

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image
+from tactile_graph_classifiers.database.known import OtherPadError
 from tactile_graph_classifiers.database.opening import load_reliefs
 from tactile_graph_classifiers.distances.choosing import Examples, choose
 from tactile_graph_classifiers.distances.classifier import Lookup
@@ -117,7 +118,7 @@ class NearestRelief:
         reliefs, where = self._reliefs, self._lookup.known.where
         shape, pitch_cm = reliefs.pad.gains.shape, reliefs.pitch_cm
         if image.shape != shape or any(abs(p / pitch_cm - 1.0) > 0.02 for p in image.pitch_cm):
-            raise DataError(
+            raise OtherPadError(
                 "image",
                 f"{image.shape[0]} x {image.shape[1]} cells of {image.pitch_cm[0]:g} cm; reliefs"
                 f" in {where} were learned on {shape[0]} x {shape[1]} of {pitch_cm:g} cm",

@@ -70,6 +70,13 @@ class Presses(NamedTuple):
         """Return the sum of each."""
         return np.asarray(np.maximum(self.values, 0.0).sum(axis=(1, 2)))
 
+    def away(self) -> Array:
+        """Return the readings beside what is looked at, of all of them."""
+        beside = self.good.copy()
+        for some, (i, j, m, n) in zip(beside, self.boxes.tolist(), strict=True):
+            some[i : i + m, j : j + n] = False
+        return np.asarray(self.values[beside])
+
     def cut(self, share: float = EDGE) -> NDArray[np.bool_]:
         """Return which reach the edge of the pad, by a share of their highest reading."""
         v = self.values

@@ -418,3 +418,9 @@ def test_objects_are_identified_by_their_reliefs(recordings):
     assert code == 0
     assert text.count("\n") > 12
     assert "right: 1" in text  # 10 to 12 of 12
+    frames = load("features").with_source("recording", path=str(recordings["large"])).frames()
+    narrow = [Frame.of(f.image.values[:, :15], f.image.pitch_cm, quantity="volt") for f in frames]
+    write_npz(Path("narrow.npz"), narrow)
+    code, text = call("identify", "narrow.npz", "--pipeline", "identify-reliefs")
+    assert code != 0
+    assert text.count("16 x 15 cells of 1.3 cm; reliefs in") == 1
