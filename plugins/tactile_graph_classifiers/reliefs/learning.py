@@ -124,9 +124,17 @@ def learned(
 
 
 def improved(
-    pad: PadReading, reliefs: Sequence[Relief], all_presses: Sequence[Presses]
+    pad: PadReading,
+    reliefs: Sequence[Relief],
+    all_presses: Sequence[Presses],
+    by_readings: bool = False,
 ) -> PadReading:
-    """Return gains, variances and the spread of the lean by what reliefs leave over."""
+    """Return gains, variances and the spread of the lean by what reliefs leave over.
+
+    Variances go with what reliefs expect: with what was read, noise of a cell that should read
+    nothing would be all of its reading. While no law is chosen yet reliefs expect what is wrong,
+    and variances go with the readings.
+    """
     each = [r.misfits / s.n_cells() for r, s in zip(reliefs, all_presses, strict=True)]
     limit = 2.5 * float(np.median(np.concatenate(each)))
     over, under = np.zeros(pad.gains.shape), np.zeros(pad.gains.shape)
@@ -138,7 +146,11 @@ def improved(
             box = (slice(i, i + m), slice(j, j + n))
             value = read_as(relief, relief.presses[k], presses.boxes[k], pad)
             real, weight = presses.values[k][box], weights[k][box]
-            by = pad.parts(value[None])[:, 0]
+            by = (
+                pad.parts(presses.values[k][None])[:, 0][:, *box]
+                if by_readings
+                else pad.parts(value[None])[:, 0]
+            )
             counts = ~((real >= pad.top) & (value > real)) & presses.good[k][box]
             told = np.where(counts & (value > 0.01), weight, 0.0)
             over[box] += told * value * (real - value)
