@@ -94,6 +94,15 @@ def pipeline_argument(command: F) -> F:
     return click.argument("pipeline", required=False, shell_complete=complete_pipeline)(command)
 
 
+def with_option(command: F) -> F:
+    """Add ``--with``."""
+    return click.option(
+        "--with", "source_settings", metavar="KEY=VALUE", multiple=True,
+        shell_complete=complete_with,
+        help="A setting of the source, as under 'with:' in YAML; can be repeated.",
+    )(command)  # fmt: skip
+
+
 def source_options(command: F) -> F:
     """Add RECORDING… and the options that choose a source and change settings."""
     for add in reversed(
@@ -101,11 +110,7 @@ def source_options(command: F) -> F:
             click.argument("recordings", metavar="[RECORDING]...", nargs=-1),
             click.option("--source", metavar="STEP", shell_complete=complete_source,
                          help="Take frames from this source step."),
-            click.option(
-                "--with", "source_settings", metavar="KEY=VALUE", multiple=True,
-                shell_complete=complete_with,
-                help="A setting of the source, as under 'with:' in YAML; can be repeated.",
-            ),
+            with_option,
             click.option(
                 "--set", "settings", metavar="NODE.SETTING=VALUE", multiple=True,
                 shell_complete=complete_set,
@@ -243,8 +248,28 @@ def source_named(
         base[COUNT] = span.stop
     if own is not None and step == own.name and not (recordings or given or COUNT in base):
         return None
-    _check_source(step, base, bool(recordings))
+    checked_source(step, base, bool(recordings))
     return step, base
+
+
+def reader_settings(step: str, texts: Sequence[str]) -> dict[str, Any]:
+    """Return the settings, checked, that ``--with`` gives a step that reads recordings.
+
+    Raises
+    ------
+    UsageError
+        If one is wrong, is none, or names the recording, which stands on the command line.
+    """
+    from tactile_graph.pipeline.document import assignment
+
+    given = dict(assignment("--with", text) for text in texts)
+    if not given:
+        return {}
+    _, target = _reader(step, ["RECORDING"])
+    if target in given:
+        raise UsageError(f"--with {target}: recordings are named on the command line")
+    checked = checked_source(step, {target: "RECORDING", **given}, recordings=True)
+    return {name: checked[name] for name in given}
 
 
 def _refuse_no_recordings(pipeline: Pipeline, words: Sequence[str]) -> None:
@@ -279,8 +304,8 @@ def takes_count(step: str) -> bool:
     return found.has("steps", step) and any(s.name == COUNT for s in found.step(step).settings)
 
 
-def _check_source(step: str, given: dict[str, Any], recordings: bool) -> None:
-    """Check what the command line says of the source: it is no mistake of the file.
+def checked_source(step: str, given: dict[str, Any], recordings: bool) -> dict[str, Any]:
+    """Return what the command line says of the source, checked: it is no mistake of the file.
 
     Raises
     ------
@@ -301,7 +326,8 @@ def _check_source(step: str, given: dict[str, Any], recordings: bool) -> None:
     signature = found.step(step)
     if signature.kind is not Kind.SOURCE:
         raise UsageError(f"--source {step}: this step is no source: it yields no frames")
-    _, troubles = validate_settings(signature, given)
+    values, troubles = validate_settings(signature, given)
     lines = [f"source {step}, {'.'.join(map(str, p)) + ': ' if p else ''}{m}" for p, m in troubles]
     if lines:
         raise UsageError("\n".join(lines))
+    return values

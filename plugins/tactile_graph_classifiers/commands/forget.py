@@ -12,12 +12,19 @@ from tactile_graph_classifiers.commands.shared import database_option, tell_apar
 
 @click.command()
 @click.argument("name")
+@click.option("--recording", metavar="FILE", default="",
+              help="Only its readings of FILE, named as when it was learned.")  # fmt: skip
 @database_option
-def forget(name: str, database: Path, timeout_s: float) -> None:
-    """Forget the object NAME and all its readings."""
+def forget(name: str, recording: str, database: Path, timeout_s: float) -> None:
+    """Forget the object NAME and all its readings, or those of one recording."""
+    from tactile_graph_classifiers.database.names import known_as
     from tactile_graph_classifiers.database.store import ObjectDatabase
 
     store = ObjectDatabase(database, timeout_s)
-    n = store.forget(name)
-    say(f"{database}: {name} forgotten, with {n} readings")
+    n = store.forget(name, recording)
+    left = known_as(name, store.known().names) if recording else None
+    if left is None:
+        say(f"{database}: {name} forgotten, with {n} readings")
+    else:
+        say(f"{database}: {n} readings of {left} forgotten, those of {recording}")
     tell_apart(store)

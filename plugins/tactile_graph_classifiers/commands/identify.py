@@ -127,14 +127,17 @@ def _named(result: Result, node: str) -> Any:
 
     Raises
     ------
-    OtherQuantityError
-        If the frame is in another unit than the objects were learned in.
+    OtherQuantityError, OtherPadError
+        If the frame is in another unit than the objects were learned in, or of another pad than
+        the one that their reliefs were learned on.
     """
     from tactile_graph.engine.outcomes.outcome import Failed
-    from tactile_graph_classifiers.database.known import OtherQuantityError
+    from tactile_graph_classifiers.database.known import OtherPadError, OtherQuantityError
 
     outcome: Any = result.outcome(node)
-    if isinstance(outcome, Failed) and isinstance(outcome.error, OtherQuantityError):
+    if isinstance(outcome, Failed) and isinstance(
+        outcome.error, OtherPadError | OtherQuantityError
+    ):
         raise outcome.error  # no other frame of these recordings would fare better
     return outcome
 
@@ -153,8 +156,8 @@ class _Lines:
 
         Raises
         ------
-        OtherQuantityError
-            If it is in another unit than the objects were learned in.
+        OtherQuantityError, OtherPadError
+            As `_named`.
         """
         from tactile_graph.engine.outcomes.outcome import Failed, Skipped
         from tactile_graph_classifiers.measuring.shapes import true_name
@@ -173,13 +176,17 @@ class _Lines:
 
     def told(self, identity: Identity, true: str, note: str = "") -> str:
         """Count an answer, and return it as a line."""
+        from tactile_graph_classifiers.database.names import plain_name
+
         self.counts[identity.name] += 1
         if not identity.known:
-            note = f"nearest: {identity.nearest}, accepted up to {identity.limit:.3g} {note}"
+            note = f"nearest: {identity.nearest}, accepted up to {identity.limit:.3g} {note} "
+            note += f"; {identity.note}" if identity.note else ""
         if true:
             self.n_true += 1
-            self.n_right += true == identity.name
-            note += "" if true == identity.name else f" (truly {true})"
+            right = plain_name(true) == plain_name(identity.name)
+            self.n_right += right
+            note += "" if right else f" (truly {true})"
         number, margin = f"{identity.distance:.3g}", f"{identity.margin:.3f}"
         note = " ".join(note.split())
         return _line(identity.name, number, identity.runner_up or "-", margin, note)
@@ -230,8 +237,8 @@ class _Together(_Lines):
 
         Raises
         ------
-        OtherQuantityError
-            If it is in another unit than the objects were learned in.
+        OtherQuantityError, OtherPadError
+            As `_named`.
         """
         from tactile_graph.engine.outcomes.outcome import Failed, Skipped
         from tactile_graph_classifiers.measuring.shapes import true_name

@@ -64,6 +64,7 @@ def learn(
     is found by leaving readings and objects out, and how well that did is said.
     """
     from tactile_graph.steps.injected import Report
+    from tactile_graph_classifiers.database.names import known_as, plain_name
     from tactile_graph_classifiers.database.rows import Lesson, Setting
     from tactile_graph_classifiers.database.store import ObjectDatabase
     from tactile_graph_classifiers.measuring.reader import Given
@@ -87,8 +88,7 @@ def learn(
     readings = [m.values.tolist() for m in read.rows]
     lesson = Lesson(name, shape or read.shape, readings, read.sources)  # type: ignore[arg-type]
     store = ObjectDatabase(database, timeout_s)
-    plain_name = " ".join(name.split())
-    presses = {plain_name: read.presses} if keep_presses else None
+    presses = {name: read.presses} if keep_presses else None
     instrument, *others = read.instruments
     for other in others:
         if not other.same_pitch(instrument):
@@ -99,13 +99,14 @@ def learn(
     setting = Setting(first.names, first.quantity, opened.name, instrument)
     twice = store.learn(setting, [lesson], presses=presses)
     known = store.known()
-    total = next(s for s in store.summaries() if s.name == plain_name)
+    kept_as = known_as(plain_name(name), known.names)
+    total = next(s for s in store.summaries() if s.name == kept_as)
     say(
         f"{database}: {total.name}{f' ({total.shape})' if total.shape else ''}: "
         f"{len(read.rows)} readings learned, {total.n_readings} in all"
     )
     if twice:
-        again = f"tactile-graph forget {pasted(plain_name)}"
+        again = f"tactile-graph forget {pasted(total.name)}"
         say(
             f"{twice} of these were learned before, from the same frames or a copy of them, and "
             f"count twice now; "
@@ -120,7 +121,7 @@ def learn(
         tell_assumed_pad(opened, settings)
     tell_apart(store)
     if total.n_readings == len(read.rows):
-        _say_namesakes(store.known(), plain_name)
+        _say_namesakes(store.known(), total.name)
     for what, n in read.left_out.items():
         say(f"left out: {n} frames: {what}", err=True)
     for line in report.few_troubles():

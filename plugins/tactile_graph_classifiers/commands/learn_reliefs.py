@@ -33,6 +33,13 @@ def learn_reliefs(database: Path, timeout_s: float) -> None:
     found = learned_of(known, presses, lambda text: say(f"{database}: {text}"))
     store.keep_reliefs(found.kept(), known)
     say(f"{database}: reliefs of {len(found.names)} objects learned")
+    if vary := found.explained_poorly():
+        say(
+            f"{database}: reliefs explain these readings poorly: they vary by {100 * vary:.0f} %"
+            " beside them, and names by them are little sure; is each object pressed on one face,"
+            " whole on the pad, well above the noise and below full scale?",
+            err=True,
+        )
     if badly := found.badly_learned():
         say(
             f"{database}: presses of {one_of(badly, 30)} fit their own relief badly when left out;"

@@ -32,6 +32,10 @@ LISTED = ("weight", "area_cm2")
 @click.option("--overwrite", is_flag=True, help="Write the export over a file that is there.")
 @click.option("--import", "imported", type=click.Path(path_type=Path), metavar="FILE",
               help="Add the objects of an export, all or none.")  # fmt: skip
+@click.option("--rename", "renamed", nargs=2, metavar="OLD NEW",
+              help="Give the object OLD the name NEW; what was learned of it stays.")  # fmt: skip
+@click.option("--merge", is_flag=True,
+              help="With --rename: NEW may be an object, which the readings join.")  # fmt: skip
 def objects(
     name: str | None,
     database: Path,
@@ -39,12 +43,17 @@ def objects(
     exported: str | None,
     overwrite: bool,
     imported: Path | None,
+    renamed: tuple[str, str] | None,
+    merge: bool,
 ) -> None:
     """List the known objects, or mean and deviation of each feature of NAME."""
+    from tactile_graph_classifiers.database.names import known_as, plain_name
     from tactile_graph_classifiers.database.store import ObjectDatabase
 
-    if (name is not None) + (exported is not None) + (imported is not None) > 1:
-        raise UsageError("give one of NAME, --export and --import")
+    if sum(given is not None for given in (name, exported, imported, renamed)) > 1:
+        raise UsageError("give one of NAME, --export, --import and --rename")
+    if merge and renamed is None:
+        raise UsageError("--merge: goes with --rename OLD NEW")
     check_targets([("--export", exported)])
     if not overwrite:
         refuse_existing([("--export", exported)])
@@ -57,16 +66,22 @@ def objects(
         say(f"{database}: {len(lessons)} objects imported")
         tell_apart(store)
         return
+    if renamed is not None:
+        n = store.rename(*renamed, merge=merge)
+        say(f"{database}: {renamed[0]} is {plain_name(renamed[1])} now, {n} readings")
+        if merge:
+            tell_apart(store)
+        return
     known = store.known()
     if exported is not None:
         _export(known, exported)
     elif name is None:
         _list(known)
     else:
-        one = next((o for o in known.objects if o.name == name), None)
-        if one is None:
+        found = known_as(name, known.names)
+        if found is None:
             raise store.unknown(name, known.names)
-        _describe(known, one)
+        _describe(known, known.objects[known.names.index(found)])
 
 
 def _export(known: Known, file: str) -> None:

@@ -21,6 +21,10 @@ class OtherQuantityError(DataError):
     """Readings in another unit than that the objects were learned in."""
 
 
+class OtherPadError(DataError):
+    """Readings of another pad than the one on which the objects' reliefs were learned."""
+
+
 @dataclass(frozen=True, eq=False)
 class KnownObject:
     """One object with its readings.

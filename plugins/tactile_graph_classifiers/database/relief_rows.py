@@ -99,8 +99,8 @@ def make_tables(connection: sqlite3.Connection) -> None:
 # -- presses ---------------------------------------------------------------------------------
 
 
-def add_presses(connection: sqlite3.Connection, name: str, presses: Sequence[Press]) -> None:
-    """Keep the images of an object's last readings."""
+def add_presses(connection: sqlite3.Connection, name: str, presses: Sequence[Press | None]) -> None:
+    """Keep the images of an object's last readings, where there is one."""
     make_tables(connection)
     query = (
         "SELECT r.id FROM readings r JOIN objects o ON o.id = r.object_id WHERE o.name = ?"
@@ -108,9 +108,35 @@ def add_presses(connection: sqlite3.Connection, name: str, presses: Sequence[Pre
     )
     numbers = [k for (k,) in connection.execute(query, (name, len(presses)))][::-1]
     for number, press in zip(numbers, presses, strict=True):
+        if press is None:
+            continue
         values, pitch = np.asarray(press.values, dtype=np.float64), float(press.pitch_cm)
         row = (number, pitch, *values.shape, _bytes(values), seal((name, pitch, values)))
         connection.execute("INSERT INTO presses VALUES (?, ?, ?, ?, ?, ?)", row)
+
+
+def rename_presses(connection: sqlite3.Connection, name: str, new: str, where: str) -> None:
+    """Seal the images of an object anew, under the name that it is to have.
+
+    Raises
+    ------
+    DataError
+        If one is not as it was written.
+    """
+    presses = presses_of(connection, name, where)
+    if not any(presses):
+        return
+    query = (
+        "SELECT r.id FROM readings r JOIN objects o ON o.id = r.object_id WHERE o.name = ?"
+        " ORDER BY r.id"
+    )
+    numbers = [k for (k,) in connection.execute(query, (name,))]
+    rows = [
+        (seal((new, press.pitch_cm, press.values)), number)
+        for number, press in zip(numbers, presses, strict=True)
+        if press is not None
+    ]
+    connection.executemany("UPDATE presses SET seal = ? WHERE reading_id = ?", rows)
 
 
 def presses_of(connection: sqlite3.Connection, name: str, where: str) -> list[Press | None]:

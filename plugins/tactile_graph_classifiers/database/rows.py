@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
@@ -259,6 +260,31 @@ def add(connection: sqlite3.Connection, lesson: Lesson, old: KnownObject | None)
         connection.executemany("INSERT INTO reading_values VALUES (?, ?, ?)", cells)
     store_statistics(connection, number, statistics)
     return known
+
+
+def rename(connection: sqlite3.Connection, it: StoredObject, name: str) -> None:
+    """Give an object another name."""
+    sealed = seal_of_object(replace(it.known, name=name), it.learned_at)
+    values = (name, sealed, it.number)
+    connection.execute("UPDATE objects SET name = ?, seal = ? WHERE id = ?", values)
+
+
+def keep_readings(connection: sqlite3.Connection, it: StoredObject, kept: Sequence[int]) -> None:
+    """Keep some of an object's readings, counted from 0, and remove the others."""
+    query = "SELECT id FROM readings WHERE object_id = ? ORDER BY id"
+    numbers = connection.execute(query, (it.number,)).fetchall()
+    gone = [numbers[k] for k in sorted({*range(len(numbers))} - {*kept})]
+    connection.executemany("DELETE FROM readings WHERE id = ?", gone)
+    readings = it.known.readings[list(kept)]
+    known = replace(
+        it.known,
+        readings=readings,
+        statistics=Statistics.of(readings),
+        sources=tuple(it.known.sources[k] for k in kept),
+    )
+    values = (len(kept), seal_of_object(known, it.learned_at), it.number)
+    connection.execute("UPDATE objects SET n_readings = ?, seal = ? WHERE id = ?", values)
+    store_statistics(connection, it.number, known.statistics)
 
 
 def store_statistics(connection: sqlite3.Connection, number: int, statistics: Statistics) -> None:

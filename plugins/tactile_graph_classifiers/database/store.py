@@ -12,6 +12,12 @@ from tactile_graph.errors import DataError, UsageError, did_you_mean, one_of
 from tactile_graph_classifiers.database.choice import Choice
 from tactile_graph_classifiers.database.connection import reading, writing
 from tactile_graph_classifiers.database.known import Known, KnownObject
+from tactile_graph_classifiers.database.names import (
+    is_of_recording,
+    known_as,
+    plain_name,
+    recording_of,
+)
 from tactile_graph_classifiers.database.relief_rows import (
     Kept,
     Press,
@@ -19,13 +25,17 @@ from tactile_graph_classifiers.database.relief_rows import (
     keep,
     kept_in,
     presses_of,
+    rename_presses,
 )
 from tactile_graph_classifiers.database.rows import (
     Contents,
     Lesson,
     Setting,
+    StoredObject,
     add,
     contents,
+    keep_readings,
+    rename,
     settle,
 )
 from tactile_graph_classifiers.distances.identity import UNKNOWN
@@ -93,6 +103,7 @@ class ObjectDatabase:
         with writing(self.path, self.timeout_s, create=True) as connection:
             there = contents(connection, str(self.path))
             objects = {it.known.name: it.known for it in there.objects}
+            checked = [it._replace(name=known_as(it.name, objects) or it.name) for it in checked]
             self._same_setting(there.setting, setting)
             if new:
                 self._none_there([lesson.name for lesson in checked], objects)
@@ -104,7 +115,8 @@ class ObjectDatabase:
             for lesson in checked:
                 objects[lesson.name] = add(connection, lesson, objects.get(lesson.name))
                 if presses:
-                    add_presses(connection, lesson.name, presses[lesson.name])
+                    of = {plain_name(name): some for name, some in presses.items()}
+                    add_presses(connection, lesson.name, of[plain_name(lesson.name)])
             settle(connection, setting, None)
         return n_again
 
@@ -143,26 +155,92 @@ class ObjectDatabase:
                 )
             keep(connection, reliefs)
 
-    def forget(self, name: str) -> int:
+    def forget(self, name: str, recording: str = "") -> int:
         """Remove an object with all its readings; return how many these were.
 
         Parameters
         ----------
         name : str
+        recording : str
+            Only its readings of this recording, named as when they were learned, are removed; the
+            object too if it has no others.
 
         Raises
         ------
         UsageError
-            If there is none of that name.
+            If there is none of that name, or no reading of the recording.
         """
         with writing(self.path, self.timeout_s) as connection:
             there = contents(connection, str(self.path))
-            known = {it.known.name: it.known.statistics.n for it in there.objects}
-            if name not in known:
-                raise self.unknown(name, known)
-            connection.execute("DELETE FROM objects WHERE name = ?", (name,))
+            it = self._one(there, name)
+            kept = [k for k, source in enumerate(it.known.sources)
+                    if recording and not is_of_recording(source, recording)]  # fmt: skip
+            n_gone = it.known.statistics.n - len(kept)
+            if not n_gone:
+                raise self._unknown_recording(it.known, recording)
+            if kept:
+                keep_readings(connection, it, kept)
+            else:
+                connection.execute("DELETE FROM objects WHERE id = ?", (it.number,))
             settle(connection, there.setting, None)
-            return known[name]
+            return n_gone
+
+    def rename(self, name: str, new: str, merge: bool = False) -> int:
+        """Give an object another name, its reliefs with it; return how many readings it has then.
+
+        Parameters
+        ----------
+        name, new : str
+        merge : bool
+            Whether the readings may join those of an object that has the new name already.
+
+        Raises
+        ------
+        UsageError
+            If there is none of that name, the new one cannot be one, or is another object's.
+        """
+        new = _checked_name(new)
+        with writing(self.path, self.timeout_s) as connection:
+            there = contents(connection, str(self.path))
+            it = self._one(there, name)
+            objects = {one.known.name: one.known for one in there.objects}
+            other = known_as(new, [one for one in objects if one != it.known.name])
+            if other is not None and not merge:
+                raise UsageError(
+                    f"{self.path}: {new!r} is there already, with {objects[other].statistics.n}"
+                    " readings; name another, or let the readings join those with --merge"
+                )
+            if other is None:
+                kept, _ = kept_in(connection, str(self.path))
+                rename_presses(connection, it.known.name, new, str(self.path))
+                rename(connection, it, new)
+                if kept.pad:
+                    same = {new if k == it.known.name else k: v for k, v in kept.objects.items()}
+                    keep(connection, Kept(kept.pad, same))
+                settle(connection, there.setting, there.choice)
+                return it.known.statistics.n
+            presses = presses_of(connection, it.known.name, str(self.path))
+            lesson = Lesson(
+                other, objects[other].shape or it.known.shape, it.known.readings, it.known.sources
+            )
+            joined = add(connection, lesson, objects[other])
+            if any(presses):
+                add_presses(connection, other, presses)
+            connection.execute("DELETE FROM objects WHERE id = ?", (it.number,))
+            settle(connection, there.setting, None)
+            return joined.statistics.n
+
+    def _one(self, there: Contents, name: str) -> StoredObject:
+        objects = {it.known.name: it for it in there.objects}
+        found = known_as(name, objects)
+        if found is None:
+            raise self.unknown(name, objects)
+        return objects[found]
+
+    def _unknown_recording(self, it: KnownObject, recording: str) -> UsageError:
+        names = list(dict.fromkeys(map(recording_of, it.sources)))
+        hint = did_you_mean(recording, names) or f"; they are of: {one_of(names, 30)}"
+        return UsageError(f"{self.path}: no reading of {it.name!r} is of {recording!r}{hint}")
 
     def unknown(self, name: str, known: Iterable[str]) -> UsageError:
         """Return the error that there is no object of that name.
@@ -196,7 +274,7 @@ class ObjectDatabase:
             )
 
     def _none_there(self, names: Sequence[str], there: Container[str]) -> None:
-        clash = [name for name in names if name in there]
+        clash = [name for name in names if name in there or names.count(name) > 1]
         if clash:
             raise UsageError(
                 f"{self.path}: there already: {one_of(clash)}; forget them first, or import into"
@@ -265,12 +343,17 @@ def _again(lesson: Lesson, old: KnownObject | None) -> int:
     return sum(tuple(values) in there for values in lesson.readings.tolist())
 
 
-def _checked(lesson: Lesson, setting: Setting) -> Lesson:
-    name = " ".join(lesson.name.split())
+def _checked_name(text: str) -> str:
+    name = plain_name(text)
     if not name or name == UNKNOWN or not name.isprintable():
         raise UsageError(
-            f"an object's name must be printable text other than {UNKNOWN!r}, got {lesson.name!r}"
+            f"an object's name must be printable text other than {UNKNOWN!r}, got {text!r}"
         )
+    return name
+
+
+def _checked(lesson: Lesson, setting: Setting) -> Lesson:
+    name = _checked_name(lesson.name)
     readings = np.asarray(lesson.readings, dtype=np.float64)
     if readings.ndim != 2 or readings.shape[1] != len(setting.features):
         raise UsageError(

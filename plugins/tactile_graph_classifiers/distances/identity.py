@@ -38,6 +38,8 @@ class Identity:
         sure as readings left out allow.
     n_presses : int
         How many readings of the object the answer rests on.
+    note : str
+        Why it is unknown though the nearest object is near enough; empty otherwise.
     """
 
     name: str
@@ -50,6 +52,7 @@ class Identity:
     runner_up_distance: float | None
     margin: float
     n_presses: int = 1
+    note: str = ""
     columns_shown: ClassVar[tuple[str, ...]] = (
         "name",
         "distance",

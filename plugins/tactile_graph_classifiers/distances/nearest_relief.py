@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Image
+from tactile_graph_classifiers.database.known import OtherPadError
 from tactile_graph_classifiers.database.opening import load_reliefs
 from tactile_graph_classifiers.distances.choosing import Examples, choose
 from tactile_graph_classifiers.distances.classifier import Lookup
@@ -31,6 +32,9 @@ LIKELY = 6
 """To so many objects, the likeliest by what was measured, a press is fitted."""
 SHARE = 0.25
 """To which power the squared distance of the measurements counts beside the misfit."""
+PARTLY_OFF = 0.2
+"""Share of the highest reading that the pad's edge reads where an object goes on beyond it; the
+blur of one that lies beside the edge reads less."""
 
 
 class NearestRelief:
@@ -58,7 +62,8 @@ class NearestRelief:
     cells over what is usual for the object, times a low power of the discriminant's squared
     distance over what is usual for it. What is accepted is the quantile of presses left out while
     reliefs and discriminant were learned (cross-conformal prediction: V. Vovk, 2015,
-    doi:10.1007/s10472-013-9368-4).
+    doi:10.1007/s10472-013-9368-4). What lies partly off the pad is not seen whole: its press is
+    unknown, and a note says why, where the runner-up would be accepted too.
     """
 
     stateless = True
@@ -102,18 +107,18 @@ class NearestRelief:
         found = self._discriminant(self._learned.located(vector[None]))
         order = np.argsort(found.unlikeliness[0], kind="stable")[:LIKELY]
         squares = (found.squares + self._manner.beyond * found.beside)[0, order]
-        misfits = misfits_to(
-            [self._reliefs.reliefs[k] for k in order], self._reliefs.pad, self._press(image)
-        )[0]
+        press = self._press(image)
+        misfits = misfits_to([self._reliefs.reliefs[k] for k in order], self._reliefs.pad, press)[0]
         scores = self._scores(misfits / self._reliefs.usual[order], squares)
         best = np.argsort(scores, kind="stable")[:2]
-        return self._identity(order[best].tolist(), scores[best].tolist())
+        partly_off = bool(press.cut(PARTLY_OFF)[0])
+        return self._identity(order[best].tolist(), scores[best].tolist(), partly_off)
 
     def _press(self, image: Image) -> Presses:
         reliefs, where = self._reliefs, self._lookup.known.where
         shape, pitch_cm = reliefs.pad.gains.shape, reliefs.pitch_cm
         if image.shape != shape or any(abs(p / pitch_cm - 1.0) > 0.02 for p in image.pitch_cm):
-            raise DataError(
+            raise OtherPadError(
                 "image",
                 f"{image.shape[0]} x {image.shape[1]} cells of {image.pitch_cm[0]:g} cm; reliefs"
                 f" in {where} were learned on {shape[0]} x {shape[1]} of {pitch_cm:g} cm",
@@ -144,10 +149,12 @@ class NearestRelief:
             out[left] = found.at(examples.labels[left], self._manner.beyond)
         return out
 
-    def _identity(self, order: list[int], scores: list[float]) -> Identity:
+    def _identity(self, order: list[int], scores: list[float], partly_off: bool) -> Identity:
         objects = [self._lookup.known.objects[k] for k in order]
+        single, note = len(objects) == 1, ""
         known = self._limit is None or scores[0] <= self._limit
-        single = len(objects) == 1
+        if self._limit is not None and partly_off and not single and scores[1] <= self._limit:
+            known, note = False, f"lies partly off the pad, and may be {objects[1].name} too"
         return Identity(
             objects[0].name if known else UNKNOWN,
             objects[0].shape if known else "",
@@ -158,4 +165,5 @@ class NearestRelief:
             "" if single else objects[1].name,
             None if single else scores[1],
             1.0 if single else 1.0 - scores[0] / scores[1] if scores[1] > 0.0 else 0.0,
+            note=note,
         )

@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_graph_classifiers.reliefs.descent import descend, kinks
 from tactile_graph_classifiers.reliefs.learning import Say, improved, learned, unlearned_pad
-from tactile_graph_classifiers.reliefs.pad_reading import LEAST, MOST, Law, PadReading
+from tactile_graph_classifiers.reliefs.pad_reading import LEAST, MOST, VARIANCES, Law, PadReading
 from tactile_graph_classifiers.reliefs.presses import Presses
 from tactile_graph_classifiers.reliefs.relief import Relief, stepped
 
@@ -54,11 +54,11 @@ def chosen_law(all_presses: Sequence[Presses], say: Say) -> Law:
     are learned between sweeps.
     """
     some = [all_presses[k] for k in _objects(all_presses)]
-    pad = unlearned_pad(some, BEGIN)
+    pad = replace(unlearned_pad(some, BEGIN), variances=np.array(VARIANCES))
     reliefs = [learned(presses, pad) for presses in some]
     n_tried = 0
     for steps in SWEEPS:
-        pad = improved(pad, reliefs, some)
+        pad = improved(pad, reliefs, some, by_readings=True)
         here = _fitted(pad, reliefs, some)
         for key in range(3):
             for up in (True, False):

@@ -22,6 +22,10 @@ BADLY = 5.0
 """So many times the misfit of others' presses tells of an object that was not learned."""
 
 
+POORLY = 0.25
+"""Readings that vary by more than this share beside what reliefs explain are explained poorly."""
+
+
 @dataclass(frozen=True, eq=False)
 class KnownReliefs:
     """Reliefs of known objects.
@@ -79,6 +83,11 @@ class KnownReliefs:
         medians = np.array([_median(some) for some in self.left_out])
         far = medians > BADLY * np.nanmedian(medians) if np.isfinite(medians).any() else []
         return [name for name, badly in zip(self.names, far, strict=False) if badly]
+
+    def explained_poorly(self) -> float:
+        """Return the share by which readings vary beside what reliefs explain; 0 if by little."""
+        vary = float(np.sqrt(self.pad.variances[1]))
+        return vary if vary > POORLY else 0.0
 
     def kept(self) -> Kept:
         """Return them as the database keeps them."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from copy import deepcopy
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -123,27 +124,40 @@ def learned(
 
 
 def improved(
-    pad: PadReading, reliefs: Sequence[Relief], all_presses: Sequence[Presses]
+    pad: PadReading,
+    reliefs: Sequence[Relief],
+    all_presses: Sequence[Presses],
+    by_readings: bool = False,
 ) -> PadReading:
-    """Return gains, variances and the spread of the lean by what reliefs leave over."""
+    """Return gains, variances and the spread of the lean by what reliefs leave over.
+
+    Variances go with what reliefs expect: with what was read, noise of a cell that should read
+    nothing would be all of its reading. While no law is chosen yet reliefs expect what is wrong,
+    and variances go with the readings.
+    """
     each = [r.misfits / s.n_cells() for r, s in zip(reliefs, all_presses, strict=True)]
     limit = 2.5 * float(np.median(np.concatenate(each)))
     over, under = np.zeros(pad.gains.shape), np.zeros(pad.gains.shape)
     parts, squares, doubted = [], [], []
     for relief, presses, off in zip(reliefs, all_presses, each, strict=True):
-        weights, by = pad.weights(presses), pad.parts(presses.values)
+        weights = pad.weights(presses)
         for k in np.flatnonzero(off <= limit):
             i, j, m, n = presses.boxes[k]
             box = (slice(i, i + m), slice(j, j + n))
             value = read_as(relief, relief.presses[k], presses.boxes[k], pad)
             real, weight = presses.values[k][box], weights[k][box]
+            by = (
+                pad.parts(presses.values[k][None])[:, 0][:, *box]
+                if by_readings
+                else pad.parts(value[None])[:, 0]
+            )
             counts = ~((real >= pad.top) & (value > real)) & presses.good[k][box]
             told = np.where(counts & (value > 0.01), weight, 0.0)
             over[box] += told * value * (real - value)
             under[box] += told * value**2
-            parts.append(by[:, k][:, *box][:, counts].T)
+            parts.append(by[:, counts].T)
             squares.append(np.minimum((real - value)[counts] ** 2, 9.0 / weight[counts]))
-            doubted.append((pad.doubts[box] * by[1, k][box])[counts])
+            doubted.append((pad.doubts[box] * by[1])[counts])
     doubts = 1.0 / (under + 1.0 / GAIN_SPREAD**2)
     change = np.clip(over * doubts, -0.3, 0.3)
     leans = np.concatenate([r.presses[:, 4:].ravel() for r in reliefs])
@@ -181,13 +195,15 @@ def unlearned_pad(all_presses: Sequence[Presses], law: Law) -> PadReading:
     """Return what is believed of a pad before anything is learned of it."""
     top = END * max(float(s.values.max()) for s in all_presses)
     shape = all_presses[0].values.shape[1:]
-    return PadReading(law, np.ones(shape), np.zeros(shape), top, np.array(VARIANCES))
+    still = np.concatenate([s.away() for s in all_presses])
+    variances = np.maximum(VARIANCES, [float(np.var(still)) if still.size else 0.0, 0.0, 0.0])
+    return PadReading(law, np.ones(shape), np.zeros(shape), top, variances)
 
 
 def learn_reliefs(
     all_presses: Sequence[Presses], law: Law, say: Say
 ) -> tuple[list[Relief], PadReading]:
-    """Return the reliefs of all objects, and how the pad reads.
+    """Return the reliefs of all objects, and how the pad reads: of the round that explains most.
 
     Parameters
     ----------
@@ -199,6 +215,7 @@ def learn_reliefs(
     """
     pad = unlearned_pad(all_presses, law)
     reliefs: list[Relief] = []
+    best: tuple[float, list[Relief], PadReading] | None = None
     for k in range(ROUNDS):
         before: Sequence[Relief | None] = reliefs or [None] * len(all_presses)
         reliefs = [learned(s, pad, r) for s, r in zip(all_presses, before, strict=True)]
@@ -208,6 +225,10 @@ def learn_reliefs(
         vary, gains = math.sqrt(pad.variances[1]), float(np.log(pad.gains).std())
         say(f"round {k + 1} of {ROUNDS}: readings vary by {100 * vary:.1f} %, gains by "
             f"{100 * gains:.1f} %")  # fmt: skip
+        if best is None or vary < best[0]:
+            best = vary, deepcopy(reliefs), pad  # a round works on those of the one before
+    assert best is not None
+    _, reliefs, pad = best
     for relief, presses in zip(reliefs, all_presses, strict=True):
         refit(relief, presses, pad.weights(presses), pad)
     return reliefs, pad

@@ -70,13 +70,20 @@ class Presses(NamedTuple):
         """Return the sum of each."""
         return np.asarray(np.maximum(self.values, 0.0).sum(axis=(1, 2)))
 
-    def cut(self) -> NDArray[np.bool_]:
-        """Return which reach the edge of the pad."""
+    def away(self) -> Array:
+        """Return the readings beside what is looked at, of all of them."""
+        beside = self.good.copy()
+        for some, (i, j, m, n) in zip(beside, self.boxes.tolist(), strict=True):
+            some[i : i + m, j : j + n] = False
+        return np.asarray(self.values[beside])
+
+    def cut(self, share: float = EDGE) -> NDArray[np.bool_]:
+        """Return which reach the edge of the pad, by a share of their highest reading."""
         v = self.values
         rim = np.maximum.reduce(
             [v[:, 0].max(1), v[:, -1].max(1), v[:, :, 0].max(1), v[:, :, -1].max(1)]
         )
-        return np.asarray(rim > EDGE * v.max(axis=(1, 2)))
+        return np.asarray(rim > share * v.max(axis=(1, 2)))
 
 
 def _press(image: Array, full_scale: float) -> tuple[Array, NDArray[np.bool_], list[int], Array]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from tactile_graph.cli.arguments import reader_settings, with_option
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 
@@ -59,6 +60,7 @@ class _Group(click.ParamType):  # type: ignore[type-arg,unused-ignore]
 @click.option("--empty", type=click.Path(exists=True, path_type=Path),
               help="A recording of the empty pad; its median is taken off, and kept in the file "
               "for the step force to do the same.")  # fmt: skip
+@with_option
 @click.option("--full-scale", type=Finite(), help="Reading from which on an element is saturated.")
 @click.option("--about", default="", help="A line for people, kept in the file.")
 @click.option("--plot", type=click.Path(dir_okay=False, path_type=Path),
@@ -89,11 +91,12 @@ def calibrate(recordings: tuple[str, ...], **options: Any) -> None:
         raise UsageError("nothing to calibrate from: give recordings as FILE=GRAMS, or --loads")
     written = (("-o", asked.output), ("--plot", asked.plot))
     check_targets(written, read=[one.path for one in given])
-    empty = None if asked.empty is None else _recording(asked.empty)
+    settings = reader_settings(SOURCE, asked.source_settings)
+    empty = None if asked.empty is None else _recording(asked.empty, settings)
     reader = _reader(asked, empty)
     if asked.output is not None and reader.offset is not None:
         _check_kept(reader.offset.size, str(asked.empty))
-    observed = _observe(given, reader, empty)
+    observed = _observe(given, reader, empty, settings)
     points, fit, seen = points_of(observed.seen), asked.fit, observed.seen
     made = replace(
         calibrated(points, fit, observed.quantity, asked.order, seen),
@@ -128,6 +131,7 @@ class _Options:
     pad_name: str | None
     decouple: bool
     empty: Path | None
+    source_settings: tuple[str, ...]
     full_scale: float | None
     about: str
     plot: Path | None
@@ -201,7 +205,7 @@ def _reader(asked: _Options, empty: _Recording | None) -> GroupReader:
     )
 
 
-def _recording(path: Path) -> _Recording:
+def _recording(path: Path, settings: Mapping[str, Any]) -> _Recording:
     """Return a recording, read by whichever plugin offers that source."""
     from tactile_graph.errors import DataError, UsageError
     from tactile_graph.plugins.registry import installed
@@ -211,7 +215,7 @@ def _recording(path: Path) -> _Recording:
     steps, report = installed(), Report()
     if not steps.has("steps", SOURCE):
         raise UsageError(f"recordings need the step {SOURCE!r}: {steps.unknown('steps', SOURCE)}")
-    frames = list(steps.load("steps", SOURCE)(path=path, report=report))
+    frames = list(steps.load("steps", SOURCE)(path=path, report=report, **settings))
     if not frames:
         raise DataError(str(path), "holds no frame")
     digest = next(iter(report.digests.values()), "")
@@ -233,14 +237,19 @@ def _check_same(first: _Recording, other: _Recording, reader: GroupReader) -> No
     )
 
 
-def _observe(given: Sequence[Loaded], reader: GroupReader, empty: _Recording | None) -> _Observed:
+def _observe(
+    given: Sequence[Loaded],
+    reader: GroupReader,
+    empty: _Recording | None,
+    settings: Mapping[str, Any],
+) -> _Observed:
     from tactile_graph.errors import DataError
 
     seen: list[Observation] = []
     origins: list[Origin] = []
     first, assumed = empty, False
     for path, load_g in given:
-        recording = _recording(path)
+        recording = _recording(path, settings)
         first = recording if first is None else first
         _check_same(first, recording, reader)
         recorded = recording.frames[0].image.quantity

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from tactile_graph.cli.arguments import reader_settings, with_option
 from tactile_graph.cli.say import say
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 @click.option("--places", type=click.Path(exists=True, dir_okay=False, path_type=Path),
               help="Where objects lay, where recordings do not say so themselves: CSV (recording, "
               "x_cm, y_cm, and frame if frames differ).")  # fmt: skip
+@with_option
 @click.option("--pad", "pad_name", help="A pad by name or file that has the same converter, "
               "circuit and law: gains and turn-on are then learned in grams.")  # fmt: skip
 def learn_pad(
@@ -39,6 +41,7 @@ def learn_pad(
     overwrite: bool,
     plots: Path | None,
     places: Path | None,
+    source_settings: tuple[str, ...],
     pad_name: str | None,
 ) -> None:
     """Learn what a pad is like from recordings of it, and write a pad file.
@@ -56,7 +59,7 @@ def learn_pad(
     base = None if pad_name is None else load_pad(pad_name)
     if base is not None and base.learned is not None:
         raise UsageError(f"--pad {pad_name}: was learned itself; give the pad it was based on")
-    stacks = _read(recordings, empty, places)
+    stacks = _read(recordings, empty, places, source_settings)
     found = learn(*stacks, base)
     making = _making(stacks, pad_name or "")
     _say(found)
@@ -104,12 +107,12 @@ def _check(
 
 
 def _read(
-    recordings: Sequence[str], empty: Sequence[Path], places: Path | None
+    recordings: Sequence[str], empty: Sequence[Path], places: Path | None, given_with: Sequence[str]
 ) -> tuple[Stack | None, Stack | None]:
     from tactile_graph.errors import UsageError
     from tactile_graph.foreign_text import tell
     from tactile_graph_pads.calibration.lists import parse_loaded
-    from tactile_graph_pads.learning.recordings import off_pad, read_places, read_stack
+    from tactile_graph_pads.learning.recordings import SOURCE, off_pad, read_places, read_stack
     from tactile_graph_pads.same_pad import check_same_pad
 
     given = [parse_loaded(text) for text in recordings]
@@ -119,8 +122,9 @@ def _read(
     if places is not None and not given:
         raise UsageError("--places: tells where objects lay, but no recording of objects is given")
     told = None if places is None else read_places(places, [path.name for path, _ in given])
-    rest = read_stack([(path, None) for path in empty]) if empty else None
-    objects = read_stack(given, told) if given else None
+    settings = reader_settings(SOURCE, given_with)
+    rest = read_stack([(path, None) for path in empty], None, settings) if empty else None
+    objects = read_stack(given, told, settings) if given else None
     if objects is not None and (off := off_pad(objects)):
         tell(off)
     if rest is not None and objects is not None:

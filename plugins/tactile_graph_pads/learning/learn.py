@@ -18,6 +18,7 @@ from tactile_graph_pads.learning.gains import LEAST_ALIKE, Gains, gains
 from tactile_graph_pads.learning.place_fit import (
     LEAST_GROUPS,
     LEAST_PLACES,
+    KnownContacts,
     LearnedPlace,
     known_contacts,
     learned_place,
@@ -129,6 +130,8 @@ def learn_pad(empty: Stack | None, objects: Stack | None, base: Pad | None = Non
     rest = _resting(empty, objects, notes)
     stack = objects if objects is not None else empty
     assert stack is not None
+    if stack.pitch_assumed:
+        notes.append("The pitch of 1 cm is assumed: no recording says it; give --with pitch_cm=…")
     if base is not None and base.geometry.shape != stack.shape:
         raise DataError(
             "--pad",
@@ -335,6 +338,11 @@ def _place(
         _groups(objects.recording)[told],
         level,
     )
+    if known.n_told and known.unlike:
+        notes.append(_unlike(known, objects))
+        return None
+    if n_lone := known.n_told - known.n_met:
+        notes.append(f"{n_lone} of {known.n_told} known places met no contact, and do not count.")
     n, n_groups = len(known.true), len(np.unique(known.group))
     if n < LEAST_PLACES or n_groups < LEAST_GROUPS:
         notes.append(
@@ -350,6 +358,19 @@ def _place(
             f"{learned.halves.off_before.mean():.3g} without; it is left out."
         )
     return learned
+
+
+def _unlike(known: KnownContacts, objects: Stack) -> str:
+    """Return why nothing is learned of places that are not those of the contacts."""
+    met = f"{known.n_met} of {known.n_told} known places met a contact"
+    if known.n_met:
+        met += f", {known.off_cells:.3g} cells off (median)"
+    pitch = "1 cm the pitch, which is assumed" if objects.pitch_assumed else "the pitch right"
+    return (
+        f"No correction of place: {met}, on contacts of about {known.radius_cells:.2g} cells "
+        f"radius. Are the places those of these frames, in cm from the pad's top left corner, x "
+        f"to the right and y down, and is {pitch}?"
+    )
 
 
 def _groups(recording: NDArray[np.int64]) -> NDArray[np.int64]:

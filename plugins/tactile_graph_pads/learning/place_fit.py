@@ -32,7 +32,8 @@ RADIUS_STEPS = 3.5
 
 class KnownContacts(NamedTuple):
     """Contacts whose true place is known: the frame (its values, good elements and all centres)
-    each lies in, its own number there, true centre, and group; n of each."""
+    each lies in, its own number there, true centre, and group; n of each. And of how many places
+    told how many met a contact."""
 
     frames: tuple[tuple[Array, Array], ...]
     frame: NDArray[np.int64]
@@ -41,6 +42,20 @@ class KnownContacts(NamedTuple):
     true: Array
     group: NDArray[np.int64]
     radius_cells: float
+    n_told: int
+    n_met: int
+
+    @property
+    def off_cells(self) -> float:
+        """Median distance of the contacts from what is known to lie there; NaN without any."""
+        return float(np.median(np.hypot(*(self.true - self.centres).T))) if self.n_met else np.nan
+
+    @property
+    def unlike(self) -> bool:
+        """Whether the places can hardly be those of the contacts: most meet none, or theirs lie off
+        by more than a cell and a quarter of a contact's radius in the median."""
+        far = max(1.0, 0.25 * self.radius_cells)
+        return 2 * self.n_met < self.n_told or self.off_cells > far
 
 
 class HeldOut(NamedTuple):
@@ -118,6 +133,8 @@ def known_contacts(
         np.array([r[3] for r in kept]).reshape(-1, 2),
         np.array([r[4] for r in kept], np.int64),
         float(np.sqrt(np.median(sizes) / np.pi)) if sizes else 0.0,
+        sum(len(places) for places in true),
+        len(rows),
     )
 
 

@@ -6,6 +6,7 @@ import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,6 +67,7 @@ class Stack:
 def read_stack(
     files: Sequence[tuple[Path, float | None]],
     places: Mapping[str, Mapping[int | None, Places]] | None = None,
+    settings: Mapping[str, Any] | None = None,
 ) -> Stack:
     """Return the frames of some recordings, read by whichever plugin offers that source.
 
@@ -76,6 +78,8 @@ def read_stack(
     places : mapping, optional
         By the recording's name and the frame's number in it (None: all its frames) what lay
         where; goes before what the recording itself says.
+    settings : mapping, optional
+        Of the step that reads them, such as ``pitch_cm``.
 
     Raises
     ------
@@ -93,7 +97,7 @@ def read_stack(
     known: list[Places | None] = []
     grams: list[float] = []
     for number, (path, load_g) in enumerate(files):
-        for n, frame in enumerate(read(path=path, report=report)):
+        for n, frame in enumerate(read(path=path, report=report, **settings or {})):
             if frames:
                 check_same_pad(frames[0].image, frame.image, str(files[of[0]][0]), str(path))
             frames.append(frame)

@@ -82,6 +82,24 @@ def test_objects_are_learned_listed_described_and_forgotten(recordings):
 
 
 @pytest.mark.slow
+def test_an_object_is_renamed_merged_and_forgotten_by_recording(recordings):
+    learned(recordings)
+    told = answer("objects", "--rename", "small", "Mu\u0308nze")
+    assert told == (0, "tactile-objects.sqlite: small is M\u00fcnze now, 12 readings\n")
+    assert "M\u00fcnze, disc, 12 readings" in call("objects", "Mu\u0308nze")[1]
+    code, text = call("objects", "--rename", "large", "M\u00fcnze")
+    assert code == 2
+    assert "'M\u00fcnze' is there already, with 12 readings; name another, or let" in text
+    assert call("objects", "--rename", "large", "M\u00fcnze", "--merge")[0] == 0
+    code, text = call("forget", "M\u00fcnze", "--recording", recordings["large"])
+    assert code == 0
+    assert f"12 readings of M\u00fcnze forgotten, those of {recordings['large']}" in text
+    assert answer("forget", "M\u00fcnze", "--recording", recordings["small"]) == (
+        0, "tactile-objects.sqlite: M\u00fcnze forgotten, with 12 readings\n"
+    )  # fmt: skip
+
+
+@pytest.mark.slow
 def test_learning_the_same_frames_twice_is_told(recordings):
     assert "count twice" not in call("learn", "small", recordings["small"], "--frames", 4)[1]
     code, answered, told = run("learn", "small", recordings["small"], "--frames", "2:7")
@@ -253,7 +271,8 @@ def test_frames_that_fail_make_the_exit_code_1_and_the_others_count():
         (("objects",), "no such object database; 'tactile-graph learn' makes one"),
         (("forget", "x"), "no such object database"),
         (("identify", "--source", "simulate"), "no such object database"),
-        (("objects", "x", "--export", "-"), "give one of NAME, --export and --import"),
+        (("objects", "x", "--export", "-"), "give one of NAME, --export, --import and --rename"),
+        (("objects", "--merge"), "--merge: goes with --rename OLD NEW"),
         (("learn", "x", "--source", "simulate", "--pipeline", "circle-3"),
          "pipeline 'circle-3' gives no measurements, but circle"),
         (("learn", "x", "--source", "simulate", "--pipeline", "feature"),
@@ -399,3 +418,9 @@ def test_objects_are_identified_by_their_reliefs(recordings):
     assert code == 0
     assert text.count("\n") > 12
     assert "right: 1" in text  # 10 to 12 of 12
+    frames = load("features").with_source("recording", path=str(recordings["large"])).frames()
+    narrow = [Frame.of(f.image.values[:, :15], f.image.pitch_cm, quantity="volt") for f in frames]
+    write_npz(Path("narrow.npz"), narrow)
+    code, text = call("identify", "narrow.npz", "--pipeline", "identify-reliefs")
+    assert code != 0
+    assert text.count("16 x 15 cells of 1.3 cm; reliefs in") == 1

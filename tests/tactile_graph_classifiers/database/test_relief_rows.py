@@ -98,6 +98,20 @@ def test_the_others_keep_their_reliefs_when_one_is_forgotten(store):
     assert len(store.presses()[1]) == 1
 
 
+def test_presses_and_reliefs_go_with_an_object_that_is_renamed(store):
+    assert store.rename("cup", "mug") == 3
+    known, kept = load_reliefs(store.path)
+    assert known.names == tuple(kept.objects) == ("mug", "ball")
+    np.testing.assert_array_equal(kept.objects["mug"]["depth"], arrays().objects["cup"]["depth"])
+    assert [one.pitch_cm for one in store.presses()[1][0]] == [0.5] * 3
+    store.learn(SETTING, [lesson("mug", (505.0, 40.0))])  # without its press
+    assert store.rename("mug", "ball", merge=True) == 7
+    ((*presses, without),) = store.presses()[1]
+    assert [one.values[0, 0] for one in presses] == [0.0, 1.0, 2.0] * 2
+    assert without is None
+    assert store.reliefs()[2] == ["ball"]
+
+
 def test_reliefs_of_objects_that_have_changed_meanwhile_are_not_kept(store):
     before = store.known()
     store.learn(SETTING, [lesson("cup", (505.0, 40.0))])

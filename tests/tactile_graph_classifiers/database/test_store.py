@@ -8,6 +8,7 @@ import pytest
 
 from helpers_classifiers import MAT, PAIR, SETTING, lesson, three_objects
 from tactile_graph.errors import DataError, UsageError
+from tactile_graph_classifiers.database import store
 from tactile_graph_classifiers.database.instrument import Instrument
 from tactile_graph_classifiers.database.rows import Lesson, Setting
 from tactile_graph_classifiers.database.statistics import Statistics
@@ -83,6 +84,42 @@ def test_forgetting_what_is_not_there_names_the_nearest(database):
         database.forget("Disk I")
     with pytest.raises(UsageError, match="no object named 'zzz'; there are: Disc I"):
         database.forget("zzz")
+
+
+def test_the_readings_of_one_recording_are_forgotten(database):
+    database.learn(SETTING, [lesson("a", (1, 1), (2, 2), (4, 3))])
+    rows = np.array([(9.0, 9.0), (8.0, 8.0)])
+    database.learn(
+        SETTING, [Lesson("a", "", rows, [f"x/a.npz, x/b.npz {n}.npz frame 0" for n in "ab"])]
+    )
+    with pytest.raises(UsageError, match=r"of 'x/c\.npz'; they are of: a 0, a 1"):
+        database.forget("a", "x/c.npz")
+    with pytest.raises(UsageError, match=r"no reading of 'a' is of 'b\.npz'"):
+        database.forget("a", "b.npz")
+    assert database.forget("a", "x/b.npz") == 1
+    it = database.known().objects[0]
+    np.testing.assert_array_equal(it.readings, [(1, 1), (2, 2), (4, 3), (9, 9)])
+    np.testing.assert_allclose(it.statistics.mean, it.readings.mean(axis=0))
+    assert it.sources == ("a 0", "a 1", "a 2", "x/a.npz, x/b.npz a.npz frame 0")
+
+
+def test_names_that_look_the_same_are_one_object(database):
+    composed, decomposed = "M\u00fctze", "Mu\u0308tze"
+    database.learn(SETTING, [lesson(decomposed, (1, 1))])
+    database.learn(SETTING, [lesson(composed, (2, 2))])
+    assert database.known().names == (composed,)
+    assert database.forget(decomposed) == 2
+
+
+def test_an_object_kept_with_letters_in_parts_is_found_and_learned_more_of(database, monkeypatch):
+    composed, decomposed = "M\u00fctze", "Mu\u0308tze"
+    with monkeypatch.context() as earlier:
+        earlier.setattr(store, "plain_name", lambda name: name)
+        database.learn(SETTING, [lesson(decomposed, (1, 1))])
+    database.learn(SETTING, [lesson(composed, (2, 2))])
+    assert [(s.name, s.n_readings) for s in database.summaries()] == [(decomposed, 2)]
+    assert database.rename(composed, composed) == 2
+    assert database.known().names == (composed,)
 
 
 @pytest.mark.parametrize("name", ["", "  ", "unknown", "a\x07b"])

@@ -76,6 +76,29 @@ def test_an_image_of_another_pad_is_refused(pad, database):
         step(Image(np.zeros(values.shape), (0.5, 0.5)), found.rows[0])
 
 
+@pytest.mark.slow  # reliefs are learned
+def test_what_lies_partly_off_the_pad_is_known_only_if_nothing_else_may_be_it(pad, database):
+    step = NearestRelief(database=database, confidence=0.99)
+    found = readings([_pushed_off(frame) for frame in pressed(pad, THINGS[1], 12)])
+    names = [step(_image(press), row)
+             for press, row in zip(found.presses, found.rows, strict=True)]  # fmt: skip
+    for it in names:
+        assert it.known == (it.distance <= it.limit < it.runner_up_distance)
+        assert bool(it.note) == (it.runner_up_distance <= it.limit)
+    assert any(it.known for it in names)
+    assert any(it.note == "lies partly off the pad, and may be disc too" for it in names)
+
+
+def _pushed_off(frame: Frame) -> Frame:
+    """Return a frame whose upper part lies beyond the pad, down to the middle of what touches."""
+    values = frame.image.values
+    rows = np.flatnonzero((values > 0.2 * values.max()).any(axis=1))
+    middle = int(rows.mean())
+    moved = np.full(values.shape, np.median(values), values.dtype)
+    moved[: len(values) - middle] = values[middle:]
+    return Frame.of(moved, frame.image.pitch_cm, quantity="raw")
+
+
 def _image(press) -> Image:
     return Image(press.values.copy(), (press.pitch_cm, press.pitch_cm))
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -40,6 +42,13 @@ def test_an_object_that_was_not_learned_is_named():
     assert found.badly_learned() == ["comb"]
     nothing = [np.full(4, np.nan)] * 3
     assert KnownReliefs.of(even_pad(), (255.0, 0.5), names, reliefs, nothing).badly_learned() == []
+
+
+def test_readings_that_vary_beside_the_reliefs_are_told():
+    made = known()
+    assert made.explained_poorly() == 0.0
+    pad = replace(made.pad, variances=np.array([1e-6, 0.4**2, 1e-4]))
+    assert replace(made, pad=pad).explained_poorly() == pytest.approx(0.4)
 
 
 @pytest.mark.parametrize(

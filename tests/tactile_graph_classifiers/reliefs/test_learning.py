@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from helpers_reliefs import (
     STRIP,
     STRIP_LAW,
     THINGS,
+    Pad,
     Thing,
     as_presses,
     bowl,
@@ -17,6 +20,7 @@ from helpers_reliefs import (
     pressed_on_a_strip,
     relief,
 )
+from tactile_graph_classifiers.reliefs import learning
 from tactile_graph_classifiers.reliefs.beyond import deepest, extend
 from tactile_graph_classifiers.reliefs.choosing_law import chosen_law
 from tactile_graph_classifiers.reliefs.kernels import NODES
@@ -80,6 +84,36 @@ def test_objects_are_learned_told_apart_and_found_again_when_left_out():
         assert (far[:, 1 - k] > 3.0 * far[:, k]).all()
         assert np.isfinite(left[k]).all()
         assert np.median(left[k]) < 2.0 * np.median(far[:, k])
+
+
+@pytest.mark.slow
+def test_noise_near_zero_is_not_taken_for_readings_that_vary():
+    coarse = replace(STRIP, full_scale=150.0, noise_counts=1.0, zero_counts=0.0)
+    pad = Pad(coarse, np.random.default_rng(5))
+    shown = [[np.array(pad.press(t).image.values, float) for _ in range(10)] for t in THINGS]
+    all_presses = [Presses.of(some, coarse.full_scale) for some in shown]
+    _, learned_pad = learn_reliefs(all_presses, STRIP_LAW, lambda _: None)
+    assert np.sqrt(learned_pad.variances[0]) == pytest.approx(1.0 / 150.0, rel=0.4)
+    assert np.sqrt(learned_pad.variances[1]) < 0.15
+
+
+def test_the_round_that_explains_most_is_kept(monkeypatch):
+    values = np.zeros((8, *SHAPE))
+    values[:, 4:8, 6:12] = 0.5
+    presses = as_presses(values, [[1, 3, 10, 12]] * 8, [[9.0, 6.0]] * 8)
+    vary = iter([0.3, 0.1, 0.7])
+
+    def worked_on(presses, pad, before, place=0):
+        it = before or relief(bowl(), np.zeros((8, 6)), np.zeros(8), usual=0.0)
+        it.usual += 1.0  # in place, as rounds do
+        return it
+
+    monkeypatch.setattr(learning, "learned", worked_on)
+    monkeypatch.setattr(learning, "improved", lambda pad, *_: replace(
+        pad, variances=np.array([1e-6, next(vary) ** 2, 1e-6])))  # fmt: skip
+    monkeypatch.setattr(learning, "refit", lambda *_: None)
+    (found,), pad = learn_reliefs([presses], STRIP_LAW, lambda _: None)
+    assert (found.usual, round(float(np.sqrt(pad.variances[1])), 6)) == (2.0, 0.1)
 
 
 @pytest.mark.slow

@@ -270,6 +270,18 @@ def test_an_assumed_pitch_is_not_held_against_a_known_one(tmp_path: Path) -> Non
     assert "fit of 3 loads" in said
 
 
+def test_settings_of_the_reader_hold_for_all_recordings(tmp_path: Path) -> None:
+    given = []
+    for path in [tmp_path / "e.npy", *(tmp_path / f"{g}.npy" for g in (30, 60, 120, 240, 480))]:
+        values = np.zeros((3, 4, 6))
+        values[:, 1:3, 2:4] = 0.0 if path.stem == "e" else np.sqrt(float(path.stem))
+        np.save(path, values.reshape(3, 24))
+        given += [f"{path}={path.stem}"] if path.stem != "e" else ["--empty", path]
+    told = ("--with", "rows=4", "--with", "columns=6", "--with", "quantity=volt")
+    assert "V" in run(*given, *told, "--fit", "isotonic")
+    refused(UsageError, "rows", *given, "--with", "rows=0")
+
+
 def test_grams_are_no_readings(tmp_path: Path) -> None:
     write_npz(tmp_path / "g.npz", [Frame(PAD.image(on_four(PAD, 500.0), "gram"))])
     refused(DataError, "only readings can be calibrated, these are gram already",

@@ -194,6 +194,33 @@ def test_places_can_be_told_by_a_list(tmp_path: Path) -> None:
     assert re.search(r"place +\d+ places in 12 recordings or stretches", said)
 
 
+@pytest.mark.slow
+def test_places_on_a_pad_whose_pitch_is_assumed_teach_nothing_until_it_is_told(
+    tmp_path: Path,
+) -> None:
+    pad = MadeUpPad(pitch_cm=(0.5, 0.5))
+    frames = list(pad.objects(60))
+    np.save(tmp_path / "e.npy", [f.image.values for f in pad.empty()])
+    np.save(tmp_path / "o.npy", [f.image.values for f in frames])
+    lines = [
+        f"o.npy,{k},{t.shape.x_cm:.4f},{t.shape.y_cm:.4f}"
+        for k, f in enumerate(frames)
+        for t in f.truth or ()
+    ]
+    listed, out = tmp_path / "places.csv", tmp_path / "p.yaml"
+    listed.write_text("\n".join(["recording,frame,x_cm,y_cm", *lines]) + "\n")
+    given = ("-e", tmp_path / "e.npy", tmp_path / "o.npy", "--places", listed, "-o", out)
+    said = run(*given)
+    assert "The pitch of 1 cm is assumed: no recording says it" in said
+    assert re.search(r"No correction of place: \d+ of 60 known places met a contact", said)
+    assert "1 cm the pitch, which is assumed?" in said
+    assert not (tmp_path / "p.place.npz").exists()
+    said = run(*given, "--with", "pitch_cm=0.5", "--overwrite")
+    assert "assumed" not in said
+    assert re.search(r"place +60 places in 12 recordings or stretches", said)
+    assert load_pad(out).learned.pitch_cm == (0.5, 0.5)
+
+
 # -- what a stranger meets -------------------------------------------------------------------
 
 
@@ -264,6 +291,8 @@ def test_mistakes_of_the_command_line_are_told_before_the_work(tmp_path: Path) -
     assert "nothing to learn from" in refused()
     assert "must end in .yaml" in refused("-e", empty, "-o", tmp_path / "pad.txt")
     assert "is given as empty and as a recording of objects" in refused("-e", empty, empty)
+    assert "unknown setting 'pich_cm'; did you" in refused("-e", empty, "--with", "pich_cm=1")
+    assert "are named on the command line" in refused("-e", empty, "--with", "path=a.npy")
     (tmp_path / "p.csv").write_text("recording,x_cm,y_cm\nobject.npz,1,2\n")
     said = refused("-e", empty, objects, "--places", tmp_path / "p.csv")
     assert "did you mean 'objects.npz'" in said
