@@ -21,6 +21,8 @@ from tactile_graph.wires import TrueObject
 Values = NDArray[np.float64]
 Pressure = Callable[[Values, Values], Values]
 """Of u and v, a point's place in the object: 0 in its middle, of the length 1 at its rim."""
+Carry = Callable[[Values, float], Values]
+"""Of loads and a width in cells: what foam makes of them."""
 Outline = Circle | Rectangle
 
 SUPPLY_V = 5.0
@@ -76,6 +78,8 @@ class Kind:
     dead_elements: int = 0
     stuck_elements: int = 0
     foam_cells: float = 0.0
+    foam: Carry | None = None
+    """How it carries loads on; as a Gaussian if not given."""
     pressure: Pressure = even
     discs: tuple[tuple[float, float], ...] = DISCS
     rectangles: tuple[tuple[float, float, float], ...] = RECTANGLES
@@ -173,7 +177,7 @@ class Bench:
         share = share * np.exp(kind.sigma * mixed + self.lines)
         share[rng.random(share.shape) < kind.voids] = 0.0
         if kind.foam_cells:
-            share = blurred(share, kind.foam_cells)
+            share = (kind.foam or blurred)(share, kind.foam_cells)
         total = share.sum()
         load = share * (weight_g / total) if total > 0.0 else share
         stray = rng.random(load.shape) < kind.strays
@@ -204,6 +208,23 @@ def blurred(values: Values, width: float, unit_variance: bool = False) -> Values
         )
         values = np.apply_along_axis(np.convolve, axis, padded, taps, "valid")
     return values / float((taps**2).sum()) if unit_variance else values
+
+
+def with_tails(values: Values, width: float) -> Values:
+    """Return values of which each falls to a part in e over a width in cells, along both axes."""
+    reach = 5
+    taps = np.exp(-np.abs(np.arange(-reach, reach + 1)) / width)
+    for axis in (0, 1):
+        padded = np.pad(values, [(reach, reach) if a == axis else (0, 0) for a in (0, 1)])
+        values = np.apply_along_axis(np.convolve, axis, padded, taps / taps.sum(), "valid")
+    return values
+
+
+def to_neighbours(values: Values, share: float) -> Values:
+    """Return values that give a share to each of their four neighbours."""
+    padded = np.pad(values, 1)
+    beside = padded[:-2, 1:-1] + padded[2:, 1:-1] + padded[1:-1, :-2] + padded[1:-1, 2:]
+    return (1.0 - 4.0 * share) * values + share * beside
 
 
 def leaning(u: Values, v: Values) -> Values:
@@ -268,6 +289,8 @@ KINDS: dict[str, Kind] = {
 
 FINGERS = replace(KINDS["small objects"], strays=0.01)
 
+FOAM = KINDS["foam 0.6 cells"]
+
 MORE_KINDS: dict[str, Kind] = {
     "fingertips and strays": FINGERS,
     "light fingertips and strays": replace(FINGERS, discs=((150.0, 1.2), (200.0, 1.5))),
@@ -286,5 +309,23 @@ MORE_KINDS: dict[str, Kind] = {
     "ring of 0.8": replace(BASE, pressure=ring(0.8)),
     "ring of 0.6, voids 0.3": replace(BASE, pressure=ring(0.6), voids=0.3),
     "ring of 0.6, noise 1.6 mV": replace(BASE, pressure=ring(0.6), noise_v=1.6e-3),
+    "foam 0.5 cells": replace(BASE, foam_cells=0.5),
+    "foam 0.7 cells": replace(BASE, foam_cells=0.7),
+    "foam 0.9 cells": replace(BASE, foam_cells=0.9),
+    "foam 1.2 cells": replace(BASE, foam_cells=1.2),
+    "foam, noise 3 mV": replace(FOAM, noise_v=3e-3),
+    "foam, 8 bits": replace(FOAM, noise_v=1.6e-3, step_v=10.0 / 256),
+    "foam, voids 0": replace(FOAM, voids=0.0),
+    "foam, gains 0.2": replace(FOAM, sigma=0.2),
+    "foam, turn-on 2 g": replace(FOAM, turn_on_g=2.0),
+    "foam, law 1/F": replace(FOAM, exponent=1.0),
+    "foam, law 1/F^2": replace(FOAM, exponent=2.0),
+    "foam, leaning face": replace(FOAM, pressure=leaning),
+    "foam, round face": replace(FOAM, pressure=round_face),
+    "foam, small objects": replace(FOAM, discs=SMALL, rectangles=SMALL_RECTANGLES),
+    "foam, over the edge": replace(FOAM, over_edge=True),
+    "foam, strays 1 %": replace(FOAM, strays=0.01),
+    "foam with tails": replace(BASE, foam_cells=0.8, foam=with_tails),
+    "to neighbours": replace(BASE, foam_cells=0.15, foam=to_neighbours),
 }
 """Kinds that are looked at by name only."""

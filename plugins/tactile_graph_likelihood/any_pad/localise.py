@@ -46,6 +46,7 @@ from tactile_graph_likelihood.any_pad.second_climbs import (
     around_clump,
     beyond_the_edge,
 )
+from tactile_graph_likelihood.any_pad.through_foam import without_foam
 from tactile_graph_likelihood.any_pad.turn_on import (
     SURE,
     chance_of_a_bend,
@@ -207,7 +208,7 @@ class AnyPad:
         return self.cleared(readings, self._fit(EVEN).likeliest(readings))
 
     def cleared(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
-        """Return readings free of a law's improbable bend and of a hollow, and the outline anew.
+        """Return readings free of a law's improbable bend, of foam and a hollow, and their outline.
 
         Only on pads of up to 1024 elements.
         """
@@ -215,6 +216,9 @@ class AnyPad:
             return readings, even
         if (bare := unbent(readings)) is not None:
             readings, even = self._by_law(readings, even, *bare)
+        untold = self.told.noise.foam_cm <= 0.0 and asked_by([even.fit], [FOAM], self._faint)
+        if untold and (its := without_foam(readings)) is not None:
+            readings, even = its, self.near(its, self.told.point_of(even))
         p = self.told.point_of(even)
         rim = without_hollow(self.told.kind, readings, p, float(p[-1]))
         return (readings, even) if rim is None else (rim, self.near(rim, p))

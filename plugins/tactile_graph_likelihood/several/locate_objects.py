@@ -21,6 +21,7 @@ from tactile_graph_likelihood.any_pad.from_frame import (
 )
 from tactile_graph_likelihood.any_pad.observed import NearlySquare, observed, uniform
 from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, within
+from tactile_graph_likelihood.any_pad.through_foam import without_foam
 from tactile_graph_likelihood.geometry.outline_prior import LARGEST, SMALLEST
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.several.fit_footprints import Footprints, Kind, SeveralSettings
@@ -31,6 +32,7 @@ from tactile_graph_likelihood.several.scene import laid
 from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
 from tactile_graph_likelihood.single.likely import likely
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, LEAST_VOIDS, MOST_VOIDS, Noise
+from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings, is_row
 
 COVERED = 0.95
@@ -75,9 +77,10 @@ class LocateObjects:
 
     Notes
     -----
-    What counts as touched follows from the noise in the frame itself. Gains and voids are those of
-    what the outlines cover whole, all objects together, beside what the pad says; where they
-    differ much the search goes on from there. Readings at the end of their range count as loads.
+    What counts as touched follows from the noise in the frame itself. Foam is undone where it is
+    seen. Gains and voids are those of what the outlines cover whole, all objects together, beside
+    what the pad says; where they differ much the search goes on from there. Readings at the end of
+    their range count as loads.
     """
 
     stateless = True
@@ -111,6 +114,8 @@ class LocateObjects:
             If nothing rises above the noise, or no such outlines explain what does.
         """
         readings = observed(image, self._pad, self._gap_cm)
+        if readings.states.size <= LARGE_PAD and self._told.foam_cm <= 0.0:
+            readings = without_foam(readings) or readings
         problem, found = self.searched(readings)
         pitch = float(readings.grid[2])
         parts, fit = posteriors(problem, found)

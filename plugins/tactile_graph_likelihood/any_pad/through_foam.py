@@ -1,0 +1,337 @@
+"""Readings as a pad without foam would give them.
+
+Foam, a skin or a pad's cover passes each load on to the neighbours, too, so that no reading is far
+below those around it. Undone with too wide a foam, loads come out below zero, most where nothing
+was pressed at all: the widest foam that leaves them positive is the one there is, and a bare pad,
+on which neighbours read what they like, bears next to none. Undone with that, readings are a bare
+pad's, with its gains, voids and rim.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.compiled import compiled_as_is
+from tactile_graph_likelihood.any_pad.spread_loads import shares_of, spread, unspread
+from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.single.element_terms import (
+    ON,
+    OVER,
+    UNDER,
+    UNKNOWN,
+    States,
+)
+from tactile_graph_likelihood.single.readings import Readings
+
+FIRST, MOST = 0.45, 0.7
+"""Widths of foam, in cells, that are looked for; of less a bare pad's readings may be, too."""
+
+WIDER, HALVINGS = 1.2, 4
+"""Factor from one width that is tried to the next, and halvings of what lies between the last."""
+
+BELOW_ZERO = 0.01
+"""Loads below zero, root mean square over the mean reading, that are put down to noise."""
+
+FILLED = 2
+"""Times that what does not show is filled in."""
+
+ENCLOSED, FEWEST = 6, 3
+"""Neighbours that show around an element, for it to lie within what is touched; elements that must
+lie there for a width to be told."""
+
+ON_EDGE = 0.15
+"""Share of what shows that may lie at the pad's edge."""
+
+MARGIN = 2
+"""Cells around what shows that may bear a load."""
+
+ROUNDS, ENOUGH = 100, 1e-3
+"""Steps towards the loads, and the change, over the largest reading, below which they end."""
+
+UNEXPLAINED, NARROWER, TRIES = 0.015, 0.96, 5
+"""Root mean square of what the loads leave of the readings, over theirs, below which they are
+believed; by how much less wide foam is tried otherwise, and how often."""
+
+DISTINCT, CONTRADICTED, STEEPER = 1.06, 0.003, 1.5
+"""Times the width, and what that must leave of the readings at least, also over what the width
+itself leaves, for it to be too wide."""
+
+FAINT = 0.15
+"""Of the median load, below which one counts as none."""
+
+NOTHING, LITTLE, FEW, BARE = 0.05, 0.5, 6, 0.25
+"""Of the median load, what counts as nothing at the rim and as little; elements that bear little
+for their share of nothing to be asked; that below which loads are carried farther than by foam, or
+the law is told wrongly."""
+
+
+class Part(NamedTuple):
+    """What shows of a pad, with some cells around it.
+
+    ``loads``, shape (rows, columns), are readings, of elements that show none the least that would;
+    ``states`` as in `element_terms`, of elements at the pad's edge unknown: nobody knows how foam
+    ends.
+    """
+
+    box: tuple[slice, slice]
+    loads: Values
+    states: States
+
+    @property
+    def seen(self) -> NDArray[np.bool_]:
+        """Which elements read a load."""
+        found: NDArray[np.bool_] = (self.states == ON) | (self.states == OVER)
+        return found
+
+
+def without_foam(readings: Readings) -> Readings | None:
+    """Return readings as if no foam lay on the pad, None where none is to be seen.
+
+    Notes
+    -----
+    Elements at the pad's edge say nothing then. What reads less than would show bears no more than
+    its neighbours' loads leave room for.
+    """
+    part = _shown(readings)
+    if part is None:
+        return None
+    loads, limits = np.empty(part.loads.shape), np.empty(part.loads.shape)
+    if not _undone(part, loads, limits):
+        return None
+    usual = float(np.median(loads[part.seen & (loads > 0.0)]))
+    if bare_rim.call(loads, part.states, usual) < BARE:
+        return None
+    return _laid_open(readings, part, loads, limits, FAINT * usual)
+
+
+def _undone(part: Part, loads: Values, limits: Values) -> bool:
+    """Write loads and limits as `undone` does; return whether it is foam, of a width that is told.
+
+    It is if wider foam explains readings clearly worse.
+    """
+    width = widest.call(part.loads, part.states)
+    if not 0.0 < width < MOST:
+        return False
+    for _ in range(TRIES):
+        left = undone.call(part.loads, part.states, width, 0.0, loads, limits)
+        if left < UNEXPLAINED:
+            least, other = max(CONTRADICTED, STEEPER * left), np.empty(loads.shape)
+            wider = DISTINCT * width
+            return bool(undone.call(part.loads, part.states, wider, least, other, other) >= least)
+        width *= NARROWER
+    return False
+
+
+def _shown(readings: Readings) -> Part | None:
+    """Return the part of a pad that shows, None where too little of it lies within the pad."""
+    shows, (rows, columns) = readings.shows, readings.states.shape
+    down, across = np.flatnonzero(shows.any(axis=1)), np.flatnonzero(shows.any(axis=0))
+    inner = np.count_nonzero(shows[1:-1, 1:-1])
+    if min(rows, columns) < 3 or inner < (1.0 - ON_EDGE) * readings.touched:
+        return None
+    first, last = max(int(down[0]) - MARGIN, 0), min(int(down[-1]) + MARGIN + 1, rows)
+    left, right = max(int(across[0]) - MARGIN, 0), min(int(across[-1]) + MARGIN + 1, columns)
+    states = readings.states.copy()
+    states[[0, -1]] = states[:, [0, -1]] = UNKNOWN
+    box = slice(first, last), slice(left, right)
+    return Part(box, np.exp(readings.logs[box]), states[box].copy())
+
+
+def _laid_open(
+    readings: Readings, part: Part, loads: Values, limits: Values, least: float
+) -> Readings:
+    """Return readings with these loads, from the least on, in the place of a part of them."""
+    seen = part.seen
+    shows = seen & (loads >= least)
+    logs, states = readings.logs.copy(), readings.states.copy()
+    logs[part.box] = np.log(np.where(shows, loads, np.maximum(np.where(seen, 0.0, limits), least)))
+    states[part.box] = np.where(shows, ON, np.where(part.states == UNKNOWN, UNKNOWN, UNDER))
+    states[[0, -1]] = states[:, [0, -1]] = UNKNOWN
+    turn_on = readings.turn_on
+    if turn_on is not None:
+        turn_on = turn_on._replace(hidden=math.inf)  # where these begin says nothing of the law
+    found = readings._replace(logs=logs, least_log=math.log(least), turn_on=turn_on)
+    return found.with_states(states)
+
+
+@compiled_as_is
+def widest(loads: Values, states: States) -> float:
+    """Return the width of foam, in cells, that leaves loads within what is touched positive.
+
+    0 where that is less than `FIRST`, or nothing lies within.
+    """
+    rows, cols = loads.shape
+    counted, n, mean = np.zeros((rows, cols), np.bool_), 0, 0.0
+    for i in range(1, rows - 1):
+        for j in range(1, cols - 1):
+            its, around = states[i, j], 0
+            if its not in (ON, UNDER):
+                continue
+            for r in range(i - 1, i + 2):
+                for c in range(j - 1, j + 2):
+                    around += states[r, c] in (ON, OVER) and (r != i or c != j)
+            if around >= ENCLOSED:
+                counted[i, j] = True
+                n += 1
+                mean += loads[i, j]
+    if n < FEWEST:
+        return 0.0
+    allowed = n * (BELOW_ZERO * mean / n) ** 2
+    least, most = 0.0, FIRST
+    while below_zero(loads, states, counted, most) <= allowed:
+        least = most
+        if least >= MOST:
+            return least
+        most = min(WIDER * most, MOST)
+    for _ in range(HALVINGS if least > 0.0 else 0):
+        middle = 0.5 * (least + most)
+        if below_zero(loads, states, counted, middle) <= allowed:
+            least = middle
+        else:
+            most = middle
+    return least
+
+
+@compiled_as_is
+def below_zero(
+    loads: Values, states: States, counted: NDArray[np.bool_], width: float
+) -> float:  # fmt: skip
+    """Return the sum of squares of those loads, without foam of a width, that are below zero."""
+    found, total = pressed_by(loads, states, shares_of(width)), 0.0
+    for i in range(loads.shape[0]):
+        for j in range(loads.shape[1]):
+            if counted[i, j] and found[i, j] < 0.0:
+                total += found[i, j] * found[i, j]
+    return total
+
+
+@compiled_as_is
+def pressed_by(loads: Values, states: States, shares: Values) -> Values:
+    """Return loads that bring about what is read, some of them below zero.
+
+    What does not show is filled in with what its neighbours would bring, as far as it may.
+    """
+    found = np.where((states == ON) | (states == OVER), loads, 0.0)
+    for _ in range(FILLED):
+        found = filled(loads, states, np.maximum(found, 0.0), shares)
+        unspread(found, shares)
+    return found
+
+
+@compiled_as_is
+def filled(loads: Values, states: States, pressed: Values, shares: Values) -> Values:
+    """Return readings that hold what is seen, elsewhere what pressed loads bring, where allowed."""
+    found = spread(pressed, shares)
+    for i in range(loads.shape[0]):
+        for j in range(loads.shape[1]):
+            if states[i, j] == ON:
+                found[i, j] = loads[i, j]
+            elif states[i, j] == UNDER:
+                found[i, j] = min(found[i, j], loads[i, j])
+            elif states[i, j] == OVER:
+                found[i, j] = max(found[i, j], loads[i, j])
+    return found
+
+
+@compiled_as_is
+def undone(
+    loads: Values, states: States, width: float, enough: float, found: Values, limits: Values
+) -> float:
+    """Write the loads that explain readings best through foam of a width, none below zero.
+
+    By accelerated projected gradients (A. Beck and M. Teboulle 2009, 10.1137/080716542), begun anew
+    where they turn back (B. O'Donoghue and E. Candes 2015, 10.1007/s10208-013-9150-3).
+
+    Parameters
+    ----------
+    loads, states : ndarray, shape (rows, columns)
+        As of `Part`.
+    width : float
+        In cells.
+    enough : float
+        What may be left of the readings for that to be enough.
+    found, limits : ndarray, shape (rows, columns)
+        Written: the loads, and what elements may bear at most of which nothing shows.
+
+    Returns
+    -------
+    float
+        Root mean square of what is left of the readings, over theirs.
+    """
+    shares = shares_of(width)
+    begin = pressed_by(loads, states, shares)
+    (rows, cols), largest, total, left = loads.shape, 0.0, 0.0, math.inf
+    for i in range(rows):
+        for j in range(cols):
+            found[i, j] = max(begin[i, j], 0.0)
+            if states[i, j] == ON:
+                largest = max(largest, loads[i, j])
+                total += loads[i, j] * loads[i, j]
+    ahead, pace = found.copy(), 1.0
+    for _ in range(ROUNDS):
+        off = left_over(loads, states, spread(ahead, shares))
+        left = math.sqrt((off * off).sum() / total)
+        if left < enough:
+            break
+        slope = spread(off, shares)
+        turned = moved = 0.0
+        faster = 0.5 * (1.0 + math.sqrt(1.0 + 4.0 * pace * pace))
+        for i in range(rows):
+            for j in range(cols):
+                new = max(ahead[i, j] - slope[i, j], 0.0)
+                step = new - found[i, j]
+                turned += (ahead[i, j] - new) * step
+                moved = max(moved, abs(step))
+                found[i, j] = new
+                ahead[i, j] = new + (pace - 1.0) / faster * step
+        pace = faster
+        if turned > 0.0:
+            ahead[:, :], pace = found, 1.0
+        if moved < ENOUGH * largest:
+            break
+    brought, own = spread(found, shares), shares[0] * shares[0]
+    for i in range(rows):
+        for j in range(cols):
+            limits[i, j] = max(found[i, j] + (loads[i, j] - brought[i, j]) / own, 0.0)
+    return left
+
+
+@compiled_as_is
+def bare_rim(loads: Values, states: States, usual: float) -> float:
+    """Return the share of elements that bear nothing among those at the rim that bear little.
+
+    Those that read a load beside others that read none: foam carries it there, but past its own
+    reach nothing. ``usual`` is the median load.
+    """
+    nothing = little = 0
+    for i in range(1, loads.shape[0] - 1):
+        for j in range(1, loads.shape[1] - 1):
+            if states[i, j] != ON or loads[i, j] >= LITTLE * usual:
+                continue
+            beside = False
+            for r in range(i - 1, i + 2):
+                for c in range(j - 1, j + 2):
+                    beside = beside or states[r, c] == UNDER
+            little += beside
+            nothing += beside and loads[i, j] < NOTHING * usual
+    return nothing / little if little >= FEW else 1.0
+
+
+@compiled_as_is
+def left_over(loads: Values, states: States, brought: Values) -> Values:
+    """Return by how much what is brought to each element is more than was read."""
+    off = np.zeros(loads.shape)
+    for i in range(loads.shape[0]):
+        for j in range(loads.shape[1]):
+            more = brought[i, j] - loads[i, j]
+            if states[i, j] == ON:
+                off[i, j] = more
+            elif states[i, j] == UNDER:
+                off[i, j] = max(more, 0.0)
+            elif states[i, j] == OVER:
+                off[i, j] = min(more, 0.0)
+    return off
