@@ -93,7 +93,7 @@ class Difference:
     high: float | None
     level: float
     method: str
-    """``bootstrap over frames`` or ``normal over frames``."""
+    """``bootstrap over frames``, ``normal over frames``, or why there are no bounds."""
     n_both: int
     n_only_variant: int
     n_only_reference: int

@@ -113,7 +113,7 @@ def mean_interval(values: Reals, rng: np.random.Generator) -> Interval:
         half = Z * float(values.std(ddof=1)) / np.sqrt(n)
         return Interval(mean, mean - half, mean + half, "normal over frames")
     if n < LEAST_FRAMES:
-        return Interval(mean, None, None, "bootstrap over frames")
+        return Interval(mean, None, None, f"no bounds below {LEAST_FRAMES} frames")
     means = np.empty(RESAMPLES)
     for start in range(0, RESAMPLES, 250):  # in parts: all at once would take n times 16 kB
         means[start : start + 250] = values[rng.integers(0, n, (250, n))].mean(axis=1)

@@ -54,7 +54,7 @@ def test_paired_differences_take_only_what_both_answered():
     got = difference_of(one, other, np.random.default_rng(0))
     assert got.mean == pytest.approx(0.75)
     assert (got.n_both, got.n_only_variant, got.n_only_reference, got.n_neither) == (2, 1, 1, 1)
-    assert got.method == "bootstrap over frames"
+    assert got.method == "no bounds below 6 frames"
     assert (got.low, got.verdict) == (None, "no clear difference")
 
 
