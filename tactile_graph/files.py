@@ -13,13 +13,13 @@ import stat
 import sys
 import threading
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 from typing import Any, BinaryIO
 
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import UsageError, did_you_mean
 from tactile_graph.part_files import part_of, put_in_place, remove
 
 Name = str | os.PathLike[str]
@@ -281,7 +281,7 @@ def not_a_path(name: str) -> str:
     return ""
 
 
-def check_target(option: str, name: Name) -> None:
+def check_target(option: str, name: Name, endings: Sequence[str] = ()) -> None:
     """Refuse a file that could not be written in the end, before the work.
 
     Parameters
@@ -289,6 +289,9 @@ def check_target(option: str, name: Name) -> None:
     option : str
         That names it on the command line, for the message.
     name : path
+    endings : sequence of str, optional
+        Those that a file of its format has, as ``.json``: a file of another kind is not written
+        over by mistake. Pipes and devices may have any name.
 
     Raises
     ------
@@ -300,6 +303,9 @@ def check_target(option: str, name: Name) -> None:
         raise UsageError(f"{option} {name}: there is no folder {str(folder)!r}")
     if path.is_dir():
         raise UsageError(f"{option} {name}: is a folder; name a file in it")
+    if endings and path.suffix.lower() not in endings and is_plain(name):
+        near = did_you_mean(path.suffix, endings) if path.suffix else ""
+        raise UsageError(f"{option} {name}: its name must end in {', '.join(endings)}{near}")
     written = Path(os.path.realpath(path)).parent if is_plain(path) else path
     if not os.access(written, os.W_OK):
         raise UsageError(f"{option} {name}: no permission to write in {str(written)!r}")

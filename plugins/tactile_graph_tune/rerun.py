@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from tactile_graph import Pipeline, Result
-from tactile_graph.compiled import once_made
+from tactile_graph.compiled import once_made, warm_up
 from tactile_graph.inspect import Runner
 from tactile_graph.wires.frame import Frame
 from tactile_graph_tune.table.kinds import Reals
@@ -40,6 +40,7 @@ def rerun(
         time of whole frames: what lies between the steps counts too.
     seed : int
     """
+    warm_up()  # where workers made the table, nothing has done so in this process
     runners = {k: p.runner(seed=seed) for k, p in pipelines.items()}
     losses = {
         k: LossOf(p, judged.answer, judged.quantity, judged.price) for k, p in pipelines.items()

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import UsageError
 from tactile_graph.wires.frame import Frame
+from tactile_graph_compare.score.statistics import tail_of
 from tactile_graph_tune.table.kinds import Reals
 
 LEAST_FRAMES = 8
 BLOCKS = 40
 """Stretches that a recording is cut into: frames next to each other stay on one side."""
 RESAMPLES = 2000
-LEVEL = 0.95
 
 
 class Split(NamedTuple):
@@ -114,7 +114,7 @@ def _blocks(labels: Sequence[str]) -> NDArray[np.int64]:
 
 
 class Interval(NamedTuple):
-    """A mean, and the bounds it lies within at `LEVEL`."""
+    """A mean, and the bounds it lies within at 95 %."""
 
     mean: float
     low: float
@@ -124,7 +124,7 @@ class Interval(NamedTuple):
 def interval_of(
     values: Reals, groups: NDArray[np.int64], seed: int, over: Reals | None = None
 ) -> Interval:
-    """Return the mean of values, and its percentile bootstrap over groups.
+    """Return the mean of values, and its expanded percentile bootstrap over groups.
 
     Parameters
     ----------
@@ -145,6 +145,6 @@ def interval_of(
     weights = counts[drawn].sum(axis=1)
     known = weights > 0.0  # where frames that count are few, a draw may hold none
     means = sums[drawn].sum(axis=1)[known] / weights[known]
-    tail = 50.0 * (1.0 - LEVEL)
+    tail = tail_of(int((counts > 0.0).sum()))
     low, high = np.percentile(means, (tail, 100.0 - tail))
     return Interval(float(values.sum() / below.sum()), float(low), float(high))

@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from difflib import get_close_matches
+from difflib import SequenceMatcher
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,9 @@ from tactile_graph.cli.named_files import is_there
 from tactile_graph.cli.say import say
 from tactile_graph.errors import TactileGraphError, did_you_mean, one_of
 from tactile_graph.plugins import registry
+
+LEAST_ALIKE = 0.75
+"""Ratio of matching letters from which a word may be a command's name that was mistyped."""
 
 
 def _preparing_told(ctx: click.Context) -> AbstractContextManager[None]:
@@ -31,6 +34,19 @@ def _preparing_told(ctx: click.Context) -> AbstractContextManager[None]:
 def _options(command: click.Command, ctx: click.Context) -> list[str]:
     """Return how a command's options are spelled."""
     return [text for option in command.get_params(ctx) for text in option.opts]
+
+
+def _spelled_alike(word: str, name: str) -> bool:
+    """Return whether a word is so near to a command's name that it may be a slip, or a part."""
+    word, name = word.casefold(), name.casefold()
+    in_part = min(len(word), len(name)) >= 3 and (name.startswith(word) or word.startswith(name))
+    return in_part or SequenceMatcher(None, name, word).ratio() >= LEAST_ALIKE
+
+
+def _same_word(one: str, other: str) -> bool:
+    """Return whether two words are one but for an ending: figure and figures, draw and drawing."""
+    short, long = sorted((one, other), key=len)
+    return len(short) >= 4 and long.startswith(short) and len(long) - len(short) <= 3
 
 
 def _is_pipeline(name: str) -> bool:
@@ -123,7 +139,7 @@ class Group(click.Group):
             return f"; it is an option: '{program} {of}--{name}'"
         if _is_pipeline(name):
             return f"; a pipeline is run by '{program} run {name}'"
-        near = did_you_mean(name, names)
+        near = did_you_mean(name, [n for n in names if _spelled_alike(name, n)])
         if self._is_recording(name) and not (near and Path(name).stem == name):  # a folder, say
             pipeline = next(filter(_is_pipeline, args), "PIPELINE")
             return f"; a pipeline is run over recordings by '{program} run {pipeline} {name}'"
@@ -140,10 +156,11 @@ class Group(click.Group):
     def _about(self, word: str) -> str:
         """Return which command says that it is about such a thing, or an empty text."""
         said = {**self.built_in, **{name: self._summary(name) for name in self._offered()}}
-        about = {w.strip(".,:;()").lower(): name for name, text in said.items()
-                 for w in text.split()}  # fmt: skip
-        near = get_close_matches(word.lower(), about, n=1, cutoff=0.65)
-        return f"; {about[near[0]]!r} is about {near[0]!r}" if near else ""
+        words = [(w.strip(".,:;()'"), name) for name, text in said.items() for w in text.split()]
+        about = [(w.lower(), name) for w, name in words if not w.isupper()]  # NAME is a place
+        near = [(w, name) for w, name in about if _same_word(word.lower(), w)]
+        found = next((its for its in near if its[0] == word.lower()), next(iter(near), None))
+        return f"; {found[1]!r} is about {found[0]!r}" if found else ""
 
     # -- help --------------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Set
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal
 
 from tactile_graph.pipeline.graph import FRAME, Graph, Node, NodeKind
@@ -132,6 +133,8 @@ def _same(a: Any, b: Any) -> bool:
 def _value(value: Any, longest: int = _LONGEST_VALUE) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
+    if isinstance(value, list) and value and all(isinstance(v, Path) for v in value):
+        value = ", ".join(map(str, value))
     text = f"{value:.6g}" if isinstance(value, float) else " ".join(str(value).split())
     return text if len(text) <= longest else text[: longest - 1] + "…"
 

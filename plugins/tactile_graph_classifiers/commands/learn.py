@@ -174,6 +174,7 @@ def _read(
     with Sharing(place, Reader, given) as workers:
         for readings in workers.over_frames(frames):
             found.join(readings)
+        found.n_failed += len(workers.left_out)
         for number in workers.left_out:
             report.trouble(f"frame {span.start + number}", KILLER)
     return found

@@ -51,7 +51,7 @@ class Readings:
     left_out : Counter
         By reason, how many frames gave no reading.
     n_failed : int
-        How many of these because a step failed.
+        Frames in which a step failed, or of which workers died.
     presses : list of Press
         The images they were measured of, if they are to be kept.
     instruments : list of Instrument

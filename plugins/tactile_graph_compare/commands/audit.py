@@ -16,6 +16,7 @@ from tactile_graph.cli.arguments import (
     pipeline_argument,
     source_options,
 )
+from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.cli.many.options import (
     Shared,
@@ -30,6 +31,7 @@ from tactile_graph.cli.targets import check_targets
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
+from tactile_graph_compare.commands.truth_option import no_truth_option
 
 if TYPE_CHECKING:
     from tactile_graph.wires.frame import Frame
@@ -37,8 +39,8 @@ if TYPE_CHECKING:
     from tactile_graph_compare.run.audit import Audit, Auditor, GuardAudit
 
 EPILOG = """\b
-Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM; what was done is
-shown.
+Exit codes: 0 done, 1 frames are left out, of which workers died, 2 not done, 130 interrupted by
+Ctrl-C, 143 ended by SIGTERM; what was done is shown.
 """
 
 
@@ -51,7 +53,8 @@ shown.
               show_default=True, metavar="SHARE",
               help="Take this share of the frames, drawn at random; all where a step keeps "
               "state.")  # fmt: skip
-@click.option("--json", "json_path", metavar="FILE", help="Write all figures as JSON, too.")
+@click.option("--json", "json_path", metavar="FILE.json", help="Write all figures as JSON, too.")
+@no_truth_option
 @workers_options
 def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **options: Any) -> None:
     """Tell what each guard of PIPELINE saves in time, and what error it brings in.
@@ -64,7 +67,7 @@ def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **optio
 
     asked = _Options(**options)
     if asked.json_path is not None:
-        check_target("--json", asked.json_path)
+        check_target("--json", asked.json_path, (".json",))
     opened = open_pipeline(
         pipeline, recordings, asked.source, asked.source_settings, asked.settings, span
     )
@@ -79,20 +82,26 @@ def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **optio
     if not found.n_frames:
         if interrupted is not None:
             raise interrupted
+        if taking.n_left_out:
+            raise UsageError(
+                f"nothing to audit: workers died of each of {taking.n_left_out} frames"
+            )
         raise UsageError(
             f"none of {found.n_seen} frames is in the sample of {asked.sample:g}: give a larger "
             "--sample"
         )
     out = console()
-    _show(found, out)
+    _show(found, out, taking.n_left_out)
     if taking.shared is not None:
         out.print(side_by_side(taking.shared.place), style="dim", soft_wrap=True)
     if asked.json_path is not None:
-        _write(found, asked.json_path)
+        _write(found, asked.json_path, taking.n_left_out)
         out.print(f"wrote {asked.json_path}", style="dim", soft_wrap=True)
     if interrupted:
         out.print(words_of(interrupted), style="bold red")
         click.get_current_context().exit(code_of(interrupted))
+    if taking.n_left_out:
+        click.get_current_context().exit(SOME_FAILED)
 
 
 @dataclass(frozen=True)
@@ -118,12 +127,15 @@ class _Taking:
     ----------
     shared : Shared or None
         Where workers are; None where the frames are taken here, after all maybe.
+    n_left_out : int
+        Frames of which workers died each time.
     """
 
     auditor: Auditor
     span: Span
     seed: int
     shared: Shared | None
+    n_left_out: int = 0
 
     def go(self) -> KeyboardInterrupt | None:
         """Take the frames; return what ended them before their end, if anything did."""
@@ -175,30 +187,35 @@ class _Taking:
         given = auditor.for_workers(shared.reading(auditor.pipeline, self.span.start))
         where = Sourced(auditor.pipeline, self.seed, self.report, self.span)
         with Sharing(shared.place, AuditWorker, given) as workers:
-            for part in shared.parts(workers, where, self._sample, N_BEFORE):
-                with held:
-                    auditor.join(part)
-                    if shared.in_place:
-                        auditor.n_seen += part.session.n
-                yield
-                if part.error is not None:
-                    raise part.error
-            of = "" if shared.in_place else " of the sample"
-            for number in workers.left_out:
-                say(f"frame {number}{of}: {KILLER}", err=True)
+            try:
+                for part in shared.parts(workers, where, self._sample, N_BEFORE):
+                    with held:
+                        auditor.join(part)
+                        if shared.in_place:
+                            auditor.n_seen += part.session.n
+                    yield
+                    if part.error is not None:
+                        raise part.error
+            finally:
+                self.n_left_out = len(workers.left_out)
+                of = "" if shared.in_place else " of the sample"
+                for number in workers.left_out:
+                    say(f"frame {number}{of}: {KILLER}", err=True)
 
     def _sample(self) -> Iterator[Frame]:
         return (frame for frame in self._frames() if self.auditor.drawn())
 
 
-def _show(found: Audit, out: Any) -> None:
+def _show(found: Audit, out: Any, n_left_out: int) -> None:
     from rich.text import Text
 
     from tactile_graph_compare.output.shown import print_table
+    from tactile_graph_compare.output.tables import left_out
 
     n, pipeline = found.n_frames, found.pipeline
     heading = f"{pipeline.name}, {n} of {found.n_seen} frames"
     heading += ": all, since a step keeps state" if found.whole else ""
+    heading += f"; {died}" if (died := left_out(n_left_out, n)) else ""
     out.print(Text(f"{heading}; it takes {found.median_us:.1f} µs a frame (median)", style="bold"))
     gone: list[str] = []
     for table in (worth_table(found), error_table(found)):
@@ -263,13 +280,14 @@ def error_table(found: Audit) -> Table:
     return Table("What guards cost in error", columns, tuple(rows), note, ("95 % from", "to"))
 
 
-def _write(found: Audit, path: str) -> None:
+def _write(found: Audit, path: str, n_left_out: int) -> None:
     from tactile_graph.files import write_whole
 
     data = {
         "pipeline": found.pipeline.name,
         "frames": found.n_frames,
         "frames_seen": found.n_seen,
+        "frames_left_out": n_left_out,
         "median_us": found.median_us,
         "guards": [asdict(g) for g in found.guards],
         "provenance": found.everything.provenance,

@@ -18,6 +18,7 @@ from tactile_graph.cli.completions import (
     complete_source,
     complete_with,
 )
+from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.interrupt import code_of, words_of
 from tactile_graph.cli.many.options import (
     Shared,
@@ -32,6 +33,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
 from tactile_graph.plugins import registry
+from tactile_graph_compare.commands.truth_option import no_truth_option
 
 if TYPE_CHECKING:
     from tactile_graph.steps.injected import Report
@@ -41,6 +43,7 @@ if TYPE_CHECKING:
     from tactile_graph_compare.variants.prepare import PreparedVariant
     from tactile_graph_compare.variants.request import VariantRequest
 
+ENDINGS = {"--markdown": (".md", ".markdown"), "--json": (".json",), "--report": (".html",)}
 EPILOG = """\b
 A variant is a pipeline's name or file, or one with settings, as one quoted word:
   tactile-graph compare circle-3 "circle-3 --set footprint.level_v=0.02"
@@ -50,6 +53,7 @@ A sweep makes a variant of each value:
 \b
 Exit codes:
   0    done
+  1    frames are left out, of which workers died
   2    not done: wrong usage, a wrong pipeline file, a file that cannot be read
   130  interrupted by Ctrl-C; what was done is shown and written
   143  ended by SIGTERM (129: its terminal was closed); likewise
@@ -91,10 +95,11 @@ Exit codes:
 @click.option("--csv", "csv_path", metavar="FILE|FOLDER",
               help="Write errors frame by frame to FILE.csv; or these, times, scores and "
               "differences to a folder.")  # fmt: skip
-@click.option("--markdown", metavar="FILE", help="Write the tables as Markdown; - for stdout.")
-@click.option("--json", "json_path", metavar="FILE",
+@click.option("--markdown", metavar="FILE.md", help="Write the tables as Markdown; - for stdout.")
+@click.option("--json", "json_path", metavar="FILE.json",
               help="Write all figures and how they were made; - for stdout.")  # fmt: skip
 @click.option("--report", metavar="FILE.html", help="Write a report to look at in a browser.")
+@no_truth_option
 @workers_options
 def compare(variants: tuple[str, ...], span: Span, **options: Any) -> None:
     """Compare VARIANTs, two or more, on the same frames: errors, times, lineage.
@@ -146,6 +151,9 @@ class _Options:
         from tactile_graph_compare.output.export import csv_files
 
         for option, name in self.files.items():
+            if option == "--csv" and not Path(name).is_dir():
+                yield option, name
+                continue
             names = csv_files(name) if option == "--csv" else [name]
             yield from ((option, str(one)) for one in names)
 
@@ -160,13 +168,27 @@ def _check_files(options: _Options) -> None:
             if option in ("--csv", "--report"):
                 raise UsageError(f"{option} -: name a file; stdout is for --markdown and --json")
             continue
-        path = Path(name)
-        folder = option == "--csv" and path.suffix.lower() != ".csv"
-        check_target(option, path / "errors.csv" if folder and path.is_dir() else path)
-        if folder and path.exists() and not path.is_dir():
-            raise UsageError(f"{option} {name}: is a file; its name must end in .csv")
-        if option == "--report" and path.suffix.lower() != ".html":
-            raise UsageError(f"{option} {name}: its name must end in .html")
+        if option == "--csv":
+            _check_csv(name)
+        else:
+            check_target(option, name, ENDINGS[option])
+
+
+def _check_csv(name: str) -> None:
+    """Refuse what is neither a file.csv nor a folder, or a name for one."""
+    path = Path(name)
+    if path.is_dir():
+        check_target("--csv", path / "errors.csv")
+        return
+    if path.suffix.lower() != ".csv":
+        if path.exists():
+            raise UsageError(f"--csv {name}: is a file; its name must end in .csv")
+        if path.suffix[1:2].isalpha() and not name.endswith("/"):
+            raise UsageError(
+                f"--csv {name}: must be a file whose name ends in .csv, or a folder; to make a "
+                f"folder of that name, write {name}/"
+            )
+    check_target("--csv", path)
 
 
 # -- what to compare -------------------------------------------------------------------------
@@ -242,6 +264,7 @@ class _Run:
         self.span = span
         self.notes = notes
         self.report: Report = Report()
+        self.n_left_out = 0
         reference = options.reference and referred(prepared, options.reference)
         self.session: Session = Session(prepared, options.seed, reference=reference)
         self.pipeline = prepared[0].pipeline
@@ -261,11 +284,15 @@ class _Run:
             elif interrupted is not None:
                 self.people.print(f"{words_of(interrupted)} before any frame", style="bold red")
             elif error is None:
-                got = self.report.counts["frames"]
-                error = UsageError(f"there is nothing to compare: the source gave {got} frames")
+                got = f"the source gave {self.report.counts['frames']} frames"
+                died = f"workers died of each of {self.n_left_out} frames"
+                why = died if self.n_left_out else got
+                error = UsageError(f"there is nothing to compare: {why}")
         if error is not None:
             raise error
-        return code_of(interrupted) if interrupted else 0
+        if interrupted is not None:
+            return code_of(interrupted)
+        return SOME_FAILED if self.n_left_out else 0
 
     def _frames(self, held: Any) -> tuple[KeyboardInterrupt | None, Exception | None]:
         from tactile_graph.cli.output.progress import Bar
@@ -313,15 +340,18 @@ class _Run:
         given = Given(session.prepared, session.seed, session.reference, reading)
         where = Sourced(self.pipeline, self.options.seed, self.report, self.span)
         with Sharing(shared.place, SessionWorker, given) as workers:
-            for part, error in shared.parts(workers, where, self._source, N_BEFORE):
-                with held:
-                    session.join(part)
-                yield
-                if error is not None:
-                    raise error
-            first = 0 if shared.in_place else self.span.start
-            for number in workers.left_out:
-                self.report.trouble(f"frame {first + number}", KILLER)
+            try:
+                for part, error in shared.parts(workers, where, self._source, N_BEFORE):
+                    with held:
+                        session.join(part)
+                    yield
+                    if error is not None:
+                        raise error
+            finally:
+                self.n_left_out = len(workers.left_out)
+                first = 0 if shared.in_place else self.span.start
+                for number in workers.left_out:
+                    self.report.trouble(f"frame {first + number}", KILLER)
 
     # -- the end -----------------------------------------------------------------------------
 
@@ -333,7 +363,12 @@ class _Run:
         if self.shared is not None:
             notes = [*notes, side_by_side(self.shared.place)]
         comparison = summarise(
-            self.session, self.report, interrupted is not None, notes, self.span.start
+            self.session,
+            self.report,
+            interrupted is not None,
+            notes,
+            self.span.start,
+            self.n_left_out,
         )
         if interrupted is not None:
             n = self.session.n

@@ -136,6 +136,7 @@ def as_json(comparison: Comparison) -> str:
             "n": c.frames.n,
             "n_reused": int(c.frames.reused.sum()),
             "n_without_truth": int((c.frames.n_true < 0).sum()),
+            "n_left_out": c.n_left_out,
         },
         "complete": not c.interrupted,
         "notes": list(c.notes),

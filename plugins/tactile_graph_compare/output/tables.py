@@ -159,8 +159,17 @@ def heading(comparison: Comparison) -> str:
     )
     unknown = int((comparison.frames.n_true < 0).sum())
     if frames and unknown == frames:
-        return text + ", nobody knows what truly lay there"
-    return text + (f", {unknown} without a known truth" if unknown else "")
+        text += ", nobody knows what truly lay there"
+    elif unknown:
+        text += f", {unknown} without a known truth"
+    died = left_out(comparison.n_left_out, frames)
+    return f"{text}; {died}" if died else text
+
+
+def left_out(n: int, n_done: int) -> str:
+    """Return how many frames are missing of which workers died; nothing where none is."""
+    of = n + n_done
+    return f"{n} of {of} frame{'s' * (of != 1)} left out: workers died" if n else ""
 
 
 def saving(comparison: Comparison) -> str:

@@ -116,6 +116,8 @@ class Comparison:
         Whether it was stopped before the source ended.
     notes : tuple of str
         What people should know: assumptions made, sources ignored.
+    n_left_out : int
+        Frames of which workers died each time: they count for no variant.
     """
 
     variants: tuple[Variant, ...]
@@ -135,6 +137,7 @@ class Comparison:
     seconds: float
     interrupted: bool = False
     notes: tuple[str, ...] = ()
+    n_left_out: int = 0
 
     @property
     def labels(self) -> tuple[str, ...]:

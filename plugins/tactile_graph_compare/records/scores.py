@@ -80,7 +80,7 @@ class Score:
 class Difference:
     """A variant's absolute error less its reference's, on targets that both answered.
 
-    ``low`` and ``high`` bound the mean at ``level``; None where fewer than two frames tell.
+    ``low`` and ``high`` bound the mean at ``level``; None where fewer than six frames tell.
     Negative is better.
     """
 
@@ -93,7 +93,7 @@ class Difference:
     high: float | None
     level: float
     method: str
-    """``bootstrap over frames`` or ``normal over frames``."""
+    """``bootstrap over frames``, ``normal over frames``, or why there are no bounds."""
     n_both: int
     n_only_variant: int
     n_only_reference: int

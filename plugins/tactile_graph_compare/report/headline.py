@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from tactile_graph_compare.output.tables import number, us
+from tactile_graph_compare.output.tables import left_out, number, us
 from tactile_graph_compare.records.comparison import Comparison, Variant
 from tactile_graph_compare.records.scores import Difference, Score
 from tactile_graph_compare.report.badges import chip, named, of
@@ -132,6 +132,10 @@ def warnings(comparison: Comparison) -> Iterator[Html]:
     """Yield what a reader must know before the figures."""
     if comparison.interrupted:
         told = f"Interrupted after {counted(comparison.frames.n, 'frame')}: these alone are shown."
+        yield tag("p", told, class_="warning")
+    if comparison.n_left_out:
+        died = left_out(comparison.n_left_out, comparison.frames.n)
+        told = f"{died}. They count for no variant, whichever of them it was."
         yield tag("p", told, class_="warning")
     if not comparison.quantities:
         yield tag(

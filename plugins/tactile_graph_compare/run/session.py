@@ -227,9 +227,16 @@ class Session:
         return Told(result.frame, as_sent(stories_of_all(result, self.logs)))
 
     def _run_again(self, held: Seen) -> Result:
+        from tactile_graph.compiled import once_made, warm_up
+
+        warm_up()  # where workers noted the frames, nothing has done so in this process
         runner = self.runners[0]
-        runner.forget()
-        result = runner(held.frame)
+
+        def run() -> Result:
+            runner.forget()
+            return runner(held.frame)
+
+        result = once_made(run) if self.plan.repeatable else run()
         return result.again(held.frame) if held.reused else result
 
     # -- which order ---------------------------------------------------------------------------

@@ -36,6 +36,7 @@ def summarise(
     interrupted: bool = False,
     notes: Sequence[str] = (),
     start: int = 0,
+    n_left_out: int = 0,
 ) -> Comparison:
     """Return what the comparison found out so far.
 
@@ -50,6 +51,8 @@ def summarise(
         What people should know.
     start : int
         How many frames of the source were left out before the first.
+    n_left_out : int
+        Frames of which workers died each time.
     """
     variants = tuple(_variant(i, log) for i, log in enumerate(session.logs, 1))
     scores = with_pareto(
@@ -83,6 +86,7 @@ def summarise(
         seconds=session.last - session.started,
         interrupted=interrupted,
         notes=tuple(notes),
+        n_left_out=n_left_out,
     )
 
 

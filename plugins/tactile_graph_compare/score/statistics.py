@@ -16,6 +16,8 @@ Reals = NDArray[np.float64]
 LEVEL = 0.95
 Z = 1.959963984540054
 """The normal distribution's 97.5 % point: half of what lies outside `LEVEL` on either side."""
+LEAST_FRAMES = 6
+"""From so many on bounds are told: fewer are all of one sign by chance too often."""
 RESAMPLES = 2000
 MOST_RESAMPLED = 2000
 """Frames up to which means are resampled; beyond, they are normal for all that matters here."""
@@ -101,22 +103,45 @@ def mean_interval(values: Reals, rng: np.random.Generator) -> Interval:
     Notes
     -----
     Up to `MOST_RESAMPLED` values the percentile bootstrap over them (Efron 1979,
-    10.1214/aos/1176344552), beyond it the normal distribution. Both take the frames as
-    independent; frames of one slow scene are not, and the interval is then too narrow.
+    10.1214/aos/1176344552), expanded as few values need it (`tail_of`), beyond it the normal
+    distribution; below `LEAST_FRAMES` no bounds. Both take the frames as independent; frames of
+    one slow scene are not, and the interval is then too narrow.
     """
     mean = float(values.mean())
     n = values.size
     if n > MOST_RESAMPLED:
         half = Z * float(values.std(ddof=1)) / np.sqrt(n)
         return Interval(mean, mean - half, mean + half, "normal over frames")
-    if n < 2:
-        return Interval(mean, None, None, "bootstrap over frames")
+    if n < LEAST_FRAMES:
+        return Interval(mean, None, None, f"no bounds below {LEAST_FRAMES} frames")
     means = np.empty(RESAMPLES)
     for start in range(0, RESAMPLES, 250):  # in parts: all at once would take n times 16 kB
         means[start : start + 250] = values[rng.integers(0, n, (250, n))].mean(axis=1)
-    tail = 50.0 * (1.0 - LEVEL)
+    tail = tail_of(n)
     low, high = np.percentile(means, (tail, 100.0 - tail))
     return Interval(mean, float(low), float(high), "bootstrap over frames")
+
+
+def tail_of(n: int) -> float:
+    """Return which percentile of resampled means is the lower bound at `LEVEL`, in percent.
+
+    Parameters
+    ----------
+    n : int
+        Independent values that were resampled.
+
+    Notes
+    -----
+    The expanded percentile interval (Hesterberg 2015, 10.1080/00031305.2015.1089789). Resamples of
+    few values spread too little: with the plain standard deviation instead of the unbiased one, and
+    as if it were known and not estimated, by normal quantiles instead of Student's.
+    """
+    if n < 2:
+        return 50.0 * (1.0 - LEVEL)
+    from scipy.special import ndtr, stdtrit
+
+    t = stdtrit(n - 1, 0.5 * (1.0 - LEVEL)) * np.sqrt(n / (n - 1))
+    return float(100.0 * ndtr(t))
 
 
 def difference_of(one: Score, reference: Score, rng: np.random.Generator) -> Difference:
@@ -195,7 +220,7 @@ def _median_bounds(ordered: Reals) -> tuple[float | None, float | None]:
     See Conover, Practical Nonparametric Statistics, 3rd ed. 1999, section 3.2.
     """
     n = ordered.size
-    if n < 6:
+    if n < LEAST_FRAMES:
         return None, None
     low = int(np.floor(0.5 * (n - Z * np.sqrt(n))))
     return float(ordered[max(low, 0)]), float(ordered[min(n - 1 - low, n - 1)])

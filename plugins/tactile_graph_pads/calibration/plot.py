@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tactile_graph.errors import UsageError, one_of
 from tactile_graph.files import check_target, whole_file
 from tactile_graph_pads.calibration.calibration import Calibration
 
@@ -42,9 +41,7 @@ def check_picture(path: str | Path) -> Path:
         If its name's ending is no known format, or its folder is not there.
     """
     path = Path(path)
-    if path.suffix.lower() not in FORMATS:
-        raise UsageError(f"--plot {path}: its name must end in {one_of(FORMATS)}")
-    check_target("--plot", path)
+    check_target("--plot", path, FORMATS)
     return path
 
 

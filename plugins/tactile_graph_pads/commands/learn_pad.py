@@ -95,11 +95,8 @@ def _check(
         ("-o", output, (".yaml", ".yml")),
         ("--plots", plots, (".html",)),
     ):
-        if path is None:
-            continue
-        if path.suffix.lower() not in endings:
-            raise UsageError(f"{option} {path}: its name must end in {' or '.join(endings)}")
-        check_target(option, path)
+        if path is not None:
+            check_target(option, path, endings)
     written = [("-o", path) for path in files_of(output)] if output is not None else []
     check_targets([*written, ("--plots", plots)])
     if not overwrite:

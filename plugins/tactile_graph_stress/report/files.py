@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, write_whole
 from tactile_graph.foreign_text import csv_line, visible
 from tactile_graph_stress.report.markdown import markdown
@@ -22,9 +21,7 @@ def check_ending(path: Path) -> None:
     ------
     UsageError
     """
-    if path.suffix.lower() not in ENDINGS:
-        raise UsageError(f"-o {path}: its name must end in {', '.join(ENDINGS)}")
-    check_target("-o", path)
+    check_target("-o", path, ENDINGS)
 
 
 def write(path: Path, rows: Sequence[Row], command: str) -> None:

@@ -110,7 +110,7 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
 @click.option("-o", "--output", "written", metavar="FILE.yaml",
               help="Write the tuned pipeline; a file that is there stays.")  # fmt: skip
 @click.option("--plot", metavar="FILE", help="Draw error against time (.png, .svg, .pdf).")
-@click.option("--json", "json_path", metavar="FILE", help="Write all figures as JSON, too.")
+@click.option("--json", "json_path", metavar="FILE.json", help="Write all figures as JSON, too.")
 @workers_options
 def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **options: Any) -> None:
     """Find the guards, the order of rungs and the settings of PIPELINE that are cheapest.
@@ -205,11 +205,9 @@ def _check_files(asked: _Options) -> None:
             raise UsageError(f"-o {asked.written}: is there already; name another file")
         check_target("-o", asked.written)
     if asked.plot is not None:
-        if not asked.plot.lower().endswith(PICTURES):
-            raise UsageError(f"--plot {asked.plot}: its name must end in {', '.join(PICTURES)}")
-        check_target("--plot", asked.plot)
+        check_target("--plot", asked.plot, PICTURES)
     if asked.json_path is not None:
-        check_target("--json", asked.json_path)
+        check_target("--json", asked.json_path, (".json",))
 
 
 def _frames(opened: Pipeline, span: Span, asked: _Options) -> Sequence[Frame]:

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from tactile_graph.errors import UsageError, did_you_mean
 from tactile_graph.files import check_target, left_of
 
 if TYPE_CHECKING:
@@ -48,12 +47,8 @@ def check_plot(path: str) -> None:
     ------
     UsageError
     """
-    suffix, allowed = Path(path).suffix.lower(), (*PICTURES, *FILMS)
-    if suffix not in allowed:
-        near = did_you_mean(suffix, allowed) if suffix else ""
-        raise UsageError(f"--plot {path}: its name must end in {', '.join(allowed)}{near}")
-    check_target("--plot", path)
-    if suffix == ".mp4":
+    check_target("--plot", path, (*PICTURES, *FILMS))
+    if Path(path).suffix.lower() == ".mp4":
         from tactile_graph.draw.film_files import ffmpeg
 
         ffmpeg()

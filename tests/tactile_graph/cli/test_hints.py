@@ -7,8 +7,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 from helpers_cli import call
+from tactile_graph.cli.group import Group, _spelled_alike
 
 pytestmark = pytest.mark.usefixtures("hand_made")
 
@@ -38,6 +40,31 @@ def test_a_slip_is_answered_with_what_to_do(args: list[str], message: str) -> No
     got = call(*args)
     assert got.exit_code == 2
     assert message in got.stdout + got.stderr
+
+
+@pytest.mark.parametrize(
+    ("word", "name", "alike"),
+    [("tun", "tune", True), ("shcema", "schema", True), ("objects-list", "objects", True),
+     ("thesis", "stress", False), ("guards", "pads", False), ("plot", "ports", False)],
+)  # fmt: skip
+def test_a_command_is_meant_only_by_what_is_spelled_nearly_so(
+    word: str, name: str, alike: bool
+) -> None:
+    assert _spelled_alike(word, name) == alike
+
+
+@pytest.mark.parametrize(
+    ("word", "told"),
+    [("thesis", "'again' is about 'thesis'"), ("figure", "'again' is about 'figures'"),
+     ("bench", "there are: "), ("measure", "there are: "), ("name", "there are: ")],
+)  # fmt: skip
+def test_what_a_command_says_of_itself_counts_by_whole_words(
+    monkeypatch: pytest.MonkeyPatch, word: str, told: str
+) -> None:
+    told_of = {"run": "List each feature of NAME.", "again": "Make figures of the thesis again."}
+    monkeypatch.setattr(Group, "_offered", lambda self: [])
+    got = CliRunner().invoke(Group("cli", built_in=told_of), [word])
+    assert f"no command named {word!r}; {told}" in got.stderr
 
 
 def test_a_pipelines_file_may_be_meant_by_a_name_and_the_other_way_round() -> None:

@@ -94,24 +94,21 @@ FILM = ["film.npz", "--frames", "2"]
          "--plot ./x.png: is the file of -o too"),
         (["graph", "p.yaml", "-o", "p.yaml", "--format", "dot"], f"-o p.yaml: {READ}"),
         (["schema", "p.yaml", "-o", "p.yaml"], f"-o p.yaml: {READ}"),
-        (["compare", "circle-1", "circle-3", *FILM, "--json", "film.npz"],
-         f"--json film.npz: {READ}"),
+        (["compare", "circle-1", "circle-3", "store.zarr", "--json", "store.zarr/zarr.json"],
+         "would overwrite a part of what the command reads (store.zarr)"),
         (["compare", "circle-1", "p.yaml --set footprint.level_v=0.02", *FILM, "--markdown",
-          "p.yaml"], "--markdown p.yaml: would overwrite a file of pipeline 'circle-1'"),
+          "p.md"], "--markdown p.md: would overwrite a file of pipeline 'circle-1'"),
         (["compare", "circle-1", "circle-3", "errors/errors.csv", "--csv", "errors"],
          f"--csv errors/errors.csv: {READ}"),
-        (["compare", "circle-1", "circle-3", *FILM, "--json", "o.html", "--report", "o.html"],
-         "--report o.html: is the file of --json too"),
-        (["compare", "circle-1", "circle-3", *FILM, "--csv", "errors", "--json",
-          "errors/times.csv"], "--json errors/times.csv: is the file of --csv too"),
-        (["audit", "circle-1", *FILM, "--json", "film.npz"], f"--json film.npz: {READ}"),
-        pytest.param(["tune", "circle-1", *FILM, "--truth", "truth.csv", "--json", "truth.csv"],
-         "--json truth.csv: would overwrite what --truth names", marks=pytest.mark.slow),
+        (["compare", "circle-1", "circle-3", *FILM, "--csv", "o.json/", "--json", "o.json"],
+         "--json o.json: is the file of --csv too"),
+        (["audit", "circle-1", "store.zarr", "--json", "store.zarr/zarr.json"],
+         "would overwrite a part of what the command reads (store.zarr)"),
+        pytest.param(["tune", "circle-1", *FILM, "--truth", "t.json", "--json", "t.json"],
+         "--json t.json: would overwrite what --truth names", marks=pytest.mark.slow),
         pytest.param(["tune", "circle-1", *FILM, "--held-out", "store.zarr", "--json",
           "store.zarr/zarr.json"],
          "would overwrite a part of what --held-out names (store.zarr)", marks=pytest.mark.slow),
-        pytest.param(["tune", "circle-1", *FILM, "-o", "t.yaml", "--json", "t.yaml"],
-         "--json t.yaml: is the file of -o too", marks=pytest.mark.slow),
         (["inspect", "film.npz", "--picture", "film.npz"], f"--picture film.npz: {READ}"),
         (["record", "store.zarr", "--append", "--source", "recording", "--with",
           "path=store.zarr"], "TARGET store.zarr: would overwrite what --with names"),
@@ -130,6 +127,8 @@ FILM = ["film.npz", "--frames", "2"]
 def test_no_command_writes_over_what_it_reads(folder: Path, words: list[str], told: str) -> None:
     if "new.elements.csv" in words:
         (folder / "new.elements.csv").write_text("recording,x_cm,y_cm\n")
+    os.link("p.yaml", "p.md")
+    os.link("truth.csv", "t.json")
     before = contents(folder)
     got = call(*words)
     assert (got.exit_code, got.stdout) == (2, "")
@@ -138,9 +137,30 @@ def test_no_command_writes_over_what_it_reads(folder: Path, words: list[str], to
     assert contents(folder) == before
 
 
-def test_a_report_is_looked_at_in_a_browser_and_named_so(folder: Path) -> None:
-    got = call("compare", "circle-1", "circle-3", *FILM, "--report", "x.txt")
-    assert (got.exit_code, got.stderr) == (2, "error: --report x.txt: its name must end in .html\n")
+COMPARE = ["compare", "circle-1", "circle-3", *FILM]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([*COMPARE, "--report", "x.txt"], "--report x.txt: its name must end in .html\n"),
+        ([*COMPARE, "--markdown", "p.yaml"], "p.yaml: its name must end in .md, .markdown\n"),
+        ([*COMPARE, "--json", "y.jsn"], "y.jsn: its name must end in .json; did you mean '.json'?"),
+        ([*COMPARE, "--csv", "x.xlsx"], "--csv x.xlsx: must be a file whose name ends in .csv, or"),
+        ([*COMPARE, "--csv", "p.yaml"], "--csv p.yaml: is a file; its name must end in .csv"),
+        (["audit", "circle-1", *FILM, "--json", "p.yaml"], "--json p.yaml: its name must end in "),
+        pytest.param(["tune", "circle-1", *FILM, "--json", "p.yaml"],
+         "--json p.yaml: its name must end in .json\n", marks=pytest.mark.slow),
+    ],
+)  # fmt: skip
+def test_a_file_of_another_kind_is_not_written_over(
+    folder: Path, words: list[str], told: str
+) -> None:
+    before = contents(folder)
+    got = call(*words)
+    assert (got.exit_code, got.stdout) == (2, "")
+    assert told in got.stderr
+    assert contents(folder) == before
 
 
 @pytest.mark.parametrize("linked", [os.symlink, os.link])

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from helpers_draw import branched, circle_demo, registry
-from tactile_graph import Image, Mask, loads
+from tactile_graph import Frame, Image, Mask, loads
 from tactile_graph.draw.blocks import blocks, wires
 from tactile_graph.draw.text import graph_dot, graph_mermaid
 
@@ -96,6 +98,17 @@ def test_dot_has_every_node_and_every_wire(make) -> None:
     for wire in wires(pipeline):
         assert f'    "{wire.start}" -> "{wire.end}" [style={styles[wire.kind]}' in text
     assert text.count(" -> ") - text.count("→") == len(wires(pipeline))
+
+
+def test_files_are_told_as_people_write_them() -> None:
+    def read(*, path: list[Path]) -> Iterator[Frame]:
+        """Give frames."""
+        yield from ()
+
+    text = "pipeline: p\nsource: {step: read, with: {path: [a.npz, b.npz]}}\n"
+    text += "nodes: {a: {step: odd, in: frame}}\noutputs: [a]"
+    source, *_ = blocks(loads(text, registry=registry(read=read, odd=odd)))
+    assert source.settings == ("path = a.npz, b.npz",)
 
 
 def test_dot_escapes_quotes_and_backslashes_and_thickens_what_is_new() -> None:

@@ -84,7 +84,7 @@ def test_the_files_are_written_though_whoever_read_along_went_away(hand_made, mo
 def test_json_holds_all_figures_and_how_they_were_made(hand_made):
     got = call(*TWO, "--json", "-", "--seed", "3")
     data = json.loads(got.stdout)
-    assert data["frames"] == {"n": 10, "n_reused": 0, "n_without_truth": 0}
+    assert data["frames"] == {"n": 10, "n_reused": 0, "n_without_truth": 0, "n_left_out": 0}
     assert [v["label"] for v in data["variants"]] == ["discs", "next"]
     assert data["lineage"][0]["added"] == ["merged", "first", "spare"]
     assert data["provenance"]["seed"] == 3
@@ -138,6 +138,7 @@ def test_recordings_are_told_from_pipelines(hand_made):
         (["discs", "--report", "."], r"--report .: is a folder; name a file in it"),
         (["discs", "--csv", "-"], r"--csv -: name a file"),
         (["discs", "--json", "-", "--markdown", "-"], r"only one of --markdown and --json"),
+        (["discs", "--truth", "t.csv"], r"convert RECORDING NEW.npz --truth t.csv' .*attach-truth"),
         (["discs", "--with", "frames=0"], r"there is nothing to compare: the source gave 0 frames"),
         (["discs", "--source", "mad"], r"--source: .*did you mean 'made'"),
         (["discs", "--source", "made", "--with", "frames=-1"], r"source made, frames: "),
@@ -255,6 +256,7 @@ def test_an_audit_tells_what_each_guard_is_worth(hand_made):
         (["discs", "--sample", "0.000001"], r"none of 4 frames is in the sample of 1e-06"),
         (["discs", "--sample", "0"], r"0.0 is not in the range"),
         (["discs", "--json", "no/x.json"], r"there is no folder 'no'"),
+        (["discs", "--truth", "t.csv"], r"--truth t.csv: audit takes the truth that recordings"),
     ],
 )
 def test_an_audit_that_cannot_be_made_is_told_why(hand_made, args, message):

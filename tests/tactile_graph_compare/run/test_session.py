@@ -13,10 +13,14 @@ import pytest
 from helpers_graphs import STEPS, registry
 from tactile_graph import Frame, Image, loads
 from tactile_graph.compiled.preparing import preparing
+from tactile_graph.plugins.registry import installed
 from tactile_graph_compare import Comparison, compare
 from tactile_graph_compare.output.export import time_rows
 from tactile_graph_compare.run.audit import Auditor
-from tactile_graph_compare.run.session import WARM_FRAMES, balanced_orders
+from tactile_graph_compare.run.frame_choice import Seen
+from tactile_graph_compare.run.session import WARM_FRAMES, Session, balanced_orders
+from tactile_graph_compare.variants.prepare import prepare
+from tactile_graph_compare.variants.request import VariantRequest
 from tactile_graph_tune.rerun import rerun
 from tactile_graph_tune.table.record import Judged, Rounds, record
 
@@ -133,6 +137,19 @@ def test_what_a_guard_saves_holds_no_compiling(branching: Branching, step: Any) 
     assert branching.made
     assert len(guard.saved_us) == len(FRAMES)
     assert guard.saved_us[LATE] < 1e6 * MADE_S
+
+
+def test_times_of_frames_that_are_shown_are_of_machine_code_that_is_ready(
+    branching: Branching, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where workers noted them, nothing was warmed up in this process."""
+    warmed: list[bool] = []
+    monkeypatch.setattr("tactile_graph.compiled.warm_up", lambda: warmed.append(True))
+    session = Session(prepare([VariantRequest(pipeline(branch))], installed()))
+    told = session.told(Seen(FRAMES[LATE], False))
+    assert branching.made
+    assert warmed
+    assert told.stories["p"]["a"].time_us < 1e6 * MADE_S
 
 
 def test_last_runs_of_tuning_hold_no_compiling(

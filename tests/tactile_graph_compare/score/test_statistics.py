@@ -9,9 +9,11 @@ import pytest
 
 from tactile_graph_compare.score.scoring import QuantityErrors
 from tactile_graph_compare.score.statistics import (
+    LEAST_FRAMES,
     difference_of,
     mean_interval,
     score_of,
+    tail_of,
     time_difference_of,
     times_of,
     with_pareto,
@@ -52,8 +54,8 @@ def test_paired_differences_take_only_what_both_answered():
     got = difference_of(one, other, np.random.default_rng(0))
     assert got.mean == pytest.approx(0.75)
     assert (got.n_both, got.n_only_variant, got.n_only_reference, got.n_neither) == (2, 1, 1, 1)
-    assert got.method == "bootstrap over frames"
-    assert got.verdict == "worse"
+    assert got.method == "no bounds below 6 frames"
+    assert (got.low, got.verdict) == (None, "no clear difference")
 
 
 def test_objects_of_one_frame_count_as_one_frame():
@@ -70,13 +72,23 @@ def test_objects_of_one_frame_count_as_one_frame():
 
 
 @pytest.mark.slow
-def test_an_interval_holds_the_true_mean_about_as_often_as_it_says():
+@pytest.mark.parametrize("n", [LEAST_FRAMES, 10, 60])
+def test_an_interval_holds_the_true_mean_about_as_often_as_it_says(n: int):
     rng = np.random.default_rng(4)
     held = 0
     for _ in range(200):
-        got = mean_interval(rng.normal(1.0, 2.0, 60), rng)
+        got = mean_interval(rng.normal(1.0, 2.0, n), rng)
         held += got.low <= 1.0 <= got.high
     assert 180 <= held <= 198
+
+
+def test_few_frames_of_one_sign_are_no_verdict_and_many_are_bounded_as_ever():
+    one, other = (score_of(v, "radius", "cm", targets([e] * 5)) for v, e in (("b", 2), ("a", 1)))
+    got = difference_of(one, other, np.random.default_rng(0))
+    assert (got.mean, got.low, got.high) == (1.0, None, None)
+    assert got.verdict == "no clear difference"
+    tails = [tail_of(n) for n in (1, 6, 10, 100, 2000)]
+    assert tails == pytest.approx([2.5, 0.2432, 0.8551, 2.3064, 2.4902], abs=1e-4)
 
 
 def test_many_frames_have_the_normal_interval_of_the_same_width():

@@ -56,7 +56,7 @@ def test_it_is_written(tmp_path: Path, ending: str) -> None:
 
 
 def test_a_name_that_cannot_be_drawn_to_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"--plot c.doc: its name must end in .pdf, .png, .svg"):
+    with pytest.raises(UsageError, match=r"--plot c.doc: its name must end in .png, .svg, .pdf"):
         check_picture("c.doc")
     with pytest.raises(UsageError, match="there is no folder"):
         check_picture(tmp_path / "none" / "c.png")

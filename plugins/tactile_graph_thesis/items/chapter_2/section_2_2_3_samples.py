@@ -178,7 +178,7 @@ def _figure(found: SampleErrors) -> Figure:
         axes.axhline(rounding, color="0.6", ls=":", label="one step, rounded")
     axes.set(xlabel="samples averaged", ylabel="rms error of a reading / mV")
     axes.set_title("Error of a reading against samples averaged")
-    axes.legend(loc="lower left")
+    figure.legend(loc="outside lower center", ncols=2, fontsize="small")
     axes.grid(alpha=0.3, which="both")
     return figure
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -159,6 +160,21 @@ def _table(found: SubpixelErrors) -> Table:
     return Table(columns, rows)
 
 
+def ticks_about(low: float, high: float) -> list[float]:
+    """Return the 1, 2 and 5 of powers of ten, from at or below a number to at or above another.
+
+    Parameters
+    ----------
+    low, high : float
+        Above 0, ``low`` below ``high``.
+    """
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    ticks = [float(f"{digit}e{power}") for power in powers for digit in (1, 2, 5)]
+    below = sum(tick <= low for tick in ticks)
+    above = sum(tick >= high for tick in ticks)
+    return ticks[below - 1 : len(ticks) - above + 1]
+
+
 def _figure(found: SubpixelErrors) -> Figure:
     figure = new_figure(11.0, 4.8)
     errors, bias, times = figure.subplots(1, 3)
@@ -175,12 +191,12 @@ def _figure(found: SubpixelErrors) -> Figure:
     times.set(title="time", ylabel="median time of a frame / µs", yscale="log")
     for axes in (errors, bias, times):
         axes.set_xlabel("cells a side of an element")
-        axes.set_xticks([1, *found.factors[1::2]])
+        axes.set_xticks(found.factors)
         axes.grid(alpha=0.3)
-    for axes, ticks in ((errors, (0.1, 0.2, 0.5, 1, 2, 5)), (times, (20, 50, 100, 200, 500))):
-        low, high = axes.get_ylim()
-        shown = [tick for tick in ticks if low <= tick <= high]
-        axes.set_yticks(shown, [f"{tick:g}" for tick in shown])
+    for axes in (errors, times):
+        ticks = ticks_about(*axes.get_ylim())
+        axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+        axes.set_ylim(ticks[0], ticks[-1])
         axes.minorticks_off()
     handles, labels = errors.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize="small")

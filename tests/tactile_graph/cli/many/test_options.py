@@ -40,6 +40,15 @@ nodes:
   circle: {step: fit_circle, in: boundary}
 outputs: [circle]
 """
+GUARDED = """
+pipeline: guarded
+about: Kills whoever runs one of its frames
+nodes:
+  image: {step: deadly, in: frame, with: {at: [7]}}
+  footprint: {step: threshold, in: image, with: {level_v: 0.01}}
+  boundary: {step: boundary_scan, in: footprint, when: footprint.count > 3}
+outputs: [boundary]
+"""
 NEXT = """
 pipeline: next
 about: Every other frame of a recording is looked at
@@ -60,7 +69,12 @@ pytestmark = pytest.mark.slow
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("options")
     write_plugin(path)
-    for name, text in (("ladder", LADDER), ("lately", LATELY), ("next", NEXT)):
+    for name, text in (
+        ("ladder", LADDER),
+        ("lately", LATELY),
+        ("next", NEXT),
+        ("guarded", GUARDED),
+    ):
         (path / f"{name}.yaml").write_text(text)
     got = ran_here(path, "convert", "a.npz", *DISCS, "--with", "frames=90")
     assert got.returncode == 0, got.stderr
@@ -108,6 +122,20 @@ def test_audit(folder: Path) -> None:
         for found in (one, two)
     ]
     assert kept[0] == kept[1]
+
+
+@pytest.mark.parametrize(
+    "words", [("compare", "guarded.yaml", "circle-1"), ("audit", "guarded.yaml")]
+)
+def test_frames_of_which_workers_died_are_counted_and_told(
+    folder: Path, words: tuple[str, ...]
+) -> None:
+    got = ran_here(folder, *words, "a.npz", "--frames", "20", "--workers", "2",
+                   "--json", "died.json")  # fmt: skip
+    assert got.returncode == 1, got.stderr
+    assert "; 1 of 20 frames left out: workers died" in " ".join(got.stdout.split())
+    data = json.loads((folder / "died.json").read_text())
+    assert (data["frames_left_out"] if words[0] == "audit" else data["frames"]["n_left_out"]) == 1
 
 
 def test_learn(folder: Path) -> None:
