@@ -130,7 +130,8 @@ class Reading:
         """
         unfit = [name for name in self.told.of_columns.given if name not in obeyed]
         if columns := [n for n in unfit if not n.startswith(OF_TIMES)]:
-            raise DataError(str(self.path), _leave_out(columns, "it has no columns, as tables have"))
+            why = "it has no columns, as tables have"
+            raise DataError(str(self.path), _leave_out(columns, why))
         if unfit:
             why = "its times, if it has any, are in the unit that its format says"
             raise DataError(str(self.path), _leave_out(unfit, why))
