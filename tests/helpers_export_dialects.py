@@ -302,8 +302,7 @@ def _matlab(hdf5: bool) -> Iterator[Dialect]:
         items = [file.create_dataset(f"#refs#/a{k}", data=f.T).ref for k, f in enumerate(OBLONG)]
         file.create_dataset("frames", data=np.array(items, dtype=h5py.ref_dtype)[:, None])
     mark = b"MATLAB 7.3 MAT-file".ljust(126) + b"IM"
-    yield _refused("MATLAB 7.3, a cell array", mark + buffer.getvalue()[len(mark) :],
-                   "cat(3, frames{:})")  # fmt: skip
+    yield _read("MATLAB 7.3, a cell array", mark + buffer.getvalue()[len(mark) :], OBLONG)
 
 
 def export_dialects(hdf5: bool = True) -> list[Dialect]:

@@ -26,6 +26,7 @@ _FORMATS = {
     "table-of-frames": "text.flat:FORMAT",
     "node-images": "arrays.node_images:STORE",
     "zarr-arrays": "arrays.zarr_arrays:FORMAT",
+    "rosbag2-folder": "logs.rosbag:FOLDER",
     "picture-folder": "arrays.pictures:FOLDER",
     "recording-store": "arrays.stored_frames:STORE",
     "numbered-files": "sequence.numbered:FOLDER",

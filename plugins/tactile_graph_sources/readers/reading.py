@@ -21,6 +21,8 @@ from tactile_graph_sources.readers.words.filled import filling
 from tactile_graph_sources.readers.words.own_number import counted
 from tactile_graph_sources.readers.words.told import Told
 
+OF_TIMES = ("time_unit", "time_format")
+"""Settings that are about times wherever they stand, not about columns alone."""
 FEWEST_COUNTED, BEGUN = 32, 0.1
 """Frames by whose numbers it is known that they count, and the share of these that one which begins
 anew may have left out."""
@@ -117,6 +119,28 @@ class Reading:
     def assume(self, what: str) -> None:
         """Note, once for the file, what nobody said and is taken to be so."""
         self._once(f"recordings with {what}")
+
+    def refuse_settings(self, *obeyed: str) -> None:
+        """Refuse settings of columns and times but those ``obeyed``, for a file that has no use
+        for them.
+
+        Raises
+        ------
+        DataError
+            If one is given.
+        """
+        unfit = [name for name in self.told.of_columns.given if name not in obeyed]
+        if columns := [n for n in unfit if not n.startswith(OF_TIMES)]:
+            why = "it has no columns, as tables have"
+            raise DataError(str(self.path), _leave_out(columns, why))
+        if unfit:
+            why = "its times, if it has any, are in the unit that its format says"
+            raise DataError(str(self.path), _leave_out(unfit, why))
+
+    def pass_settings(self) -> None:
+        """Note settings of columns and times that a file of ours, which says itself, passes by."""
+        for name in self.told.of_columns.given:
+            self.assume(f"{name} left out, as a file of ours says itself what it holds")
 
     def at(self, line: int | str) -> str:
         """Return a place in the file for messages."""
@@ -366,3 +390,7 @@ class Reading:
         if what not in self._fresh:
             self._fresh.add(what)
             self.report.count(what)
+
+
+def _leave_out(names: list[str], why: str) -> str:
+    return f"{' and '.join(names)}: {why}; leave {'it' if len(names) == 1 else 'them'} out"

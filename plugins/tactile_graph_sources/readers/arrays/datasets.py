@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph_sources.readers.arrays.stack import MOST_CHANNELS, stack_of
+from tactile_graph_sources.readers.arrays.times import in_seconds
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
-from tactile_graph_sources.readers.tables.layout import assumed_unit
-from tactile_graph_sources.readers.words.compact import stamps_s
-from tactile_graph_sources.readers.words.names import ROLES, named
+from tactile_graph_sources.readers.words.names import ROLES
 from tactile_graph_sources.readers.words.preamble import Described
 
 MOST_VALUES = 500_000_000
+BY_COLUMN = "order=columns where they come column by column, as MATLAB's reshape puts them"
 _NUMBERED = re.compile(r"(.*?)(\d{1,9})(/\D*)?")
 _FRAME_WORDS = {w for w, role in ROLES.items() if role == "frame" and len(w) > 2}
 _FRAME_WORDS |= {"arr", "img", "matrix", "map", "t"}
@@ -39,10 +39,12 @@ class Held(NamedTuple):
     said : Described
         What the file says of it.
     times : ndarray, shape (n,), optional
-        None where there are none.
+        Numbers, dates or texts; None where there are none.
     times_name : str
     known : bool
         Whether the frames of three axes are known to lie along the first.
+    of_matlab : bool
+        Whether MATLAB wrote it, where cells in a row mostly come column by column.
     """
 
     values: NDArray[Any]
@@ -51,6 +53,7 @@ class Held(NamedTuple):
     times: NDArray[Any] | None = None
     times_name: str = ""
     known: bool = False
+    of_matlab: bool = False
 
 
 class Unread(NamedTuple):
@@ -81,33 +84,41 @@ def _timed(
     reading: Reading, held: Held
 ) -> tuple[NDArray[Any], NDArray[np.float64] | None, dict[str, Any]]:
     """Return matrices, their times, and what the file says of all of them."""
-    _refuse_lone_matrix(reading, held)
-    held = _along_times(reading, held)
-    frames = stack_of(reading, held.values, held.what, "known" if held.known else "asked")
-    times, factor = held.times, 1.0
+    try:
+        _refuse_lone_matrix(reading, held)
+        held = _along_times(reading, held)
+        frames = stack_of(reading, held.values, held.what, "known" if held.known else "asked")
+    except DataError as error:
+        if held.of_matlab and held.values.ndim == 2 and not reading.told.shape:
+            error.what += f" (and {BY_COLUMN})"
+        raise
+    _tell_order(reading, held, frames)
+    times, said = held.times, held.said
     if times is not None and len(times) != len(frames):
         reading.assume(f"times left out ({len(times)}, for {len(frames)} frames)")
         times = None
-    stamps = None if times is None else stamps_s(times.astype(np.float64))
-    if stamps is not None:
-        times = stamps - stamps[0]
-    elif times is not None:
-        factor = _factor(reading, held.times_name, times)
-    said = held.said
+    elif times is None and (named := reading.told.of_columns.given):
+        reading.assume(f"no times beside the frames, so {' and '.join(named)} says nothing")
     for note in said.notes:
         reading.assume(note)
-    if times is None and said.frame_s is not None:
-        times, factor = np.arange(len(frames)), said.frame_s
-    times_s = None if times is None else times.astype(np.float64) * factor
+    times_s = None if times is None else in_seconds(reading, held.times_name, times)
+    if times_s is None and said.frame_s is not None:
+        times_s = np.arange(len(frames), dtype=np.float64) * said.frame_s
     told = {"factor": said.factor, "quantity": said.quantity}
     told |= {"pitch_cm": said.pitch_cm, "origin_cm": said.origin_cm}
     return frames, times_s, told
 
 
+def _tell_order(reading: Reading, held: Held, frames: NDArray[Any]) -> None:
+    """Tell in which order cells in a row of MATLAB are read, where nobody says it is its own."""
+    in_a_row = held.values.ndim == 2 and held.values.shape != frames.shape[1:]
+    if held.of_matlab and in_a_row and reading.told.order == "rows":
+        reading.assume(f"cells assumed to come row by row ({BY_COLUMN})")
+
+
 def _along_times(reading: Reading, held: Held) -> Held:
     """Return a stack with its frames along the first axis, if its times tell where they lie."""
-    told = reading.told.rows is not None and reading.told.columns is not None
-    if held.known or told or held.times is None or held.values.ndim != 3:
+    if held.known or reading.told.shape or held.times is None or held.values.ndim != 3:
         return held
     n, n_first, n_last = len(held.times), held.values.shape[0], held.values.shape[-1]
     if n == n_last != n_first:
@@ -118,8 +129,7 @@ def _along_times(reading: Reading, held: Held) -> Held:
 
 def _refuse_lone_matrix(reading: Reading, held: Held) -> None:
     """Refuse a matrix that has a time for each of its rows, so that these may be frames."""
-    told = reading.told.rows is not None and reading.told.columns is not None
-    if told or held.times is None or held.values.ndim != 2:
+    if reading.told.shape or held.times is None or held.values.ndim != 2:
         return
     n, n_cells = held.values.shape
     if 1 < n == len(held.times):
@@ -232,31 +242,3 @@ def numbered(shapes: Mapping[str, tuple[int, ...]]) -> list[str]:
     if len(shapes[next(iter(found))]) != 2 or not (not word or word in _FRAME_WORDS):
         return []
     return sorted(found, key=lambda n: int(m[2]) if (m := found[n]) else 0)
-
-
-def seconds(times: NDArray[Any], name: str) -> tuple[NDArray[Any], str]:
-    """Return times as numbers, and what they are then called: dates become seconds."""
-    if times.dtype.kind not in "Mm" or not len(times):
-        return times, name
-    return (times - times[0]) / np.timedelta64(1, "s"), "time_s"
-
-
-def time_among(names: Iterable[str]) -> str:
-    """Return the first of the names that says time, ours before all; empty if none does."""
-    ours_first = sorted(names, key=lambda n: (bare(n) != "time_s", n))
-    return next((n for n in ours_first if "time" in named((bare(n), "")).roles), "")
-
-
-def _factor(reading: Reading, name: str, times: NDArray[Any]) -> float:
-    said = named((bare(name), ""))
-    if said.time_factor is not None:
-        return said.time_factor
-    known = times[np.isfinite(times)].astype(np.float64)
-    factor, note = assumed_unit(known, said.time_unit)
-    reading.assume(note)
-    return factor
-
-
-def bare(name: str) -> str:
-    """Return the name of an array without those of its groups."""
-    return name.replace(".", "/").rpartition("/")[2]

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.arrays.datasets import (
     Held,
     Unread,
-    bare,
     chosen,
     is_stack,
     numbered,
-    seconds,
-    time_among,
 )
+from tactile_graph_sources.readers.arrays.packing import Packing, packing_of
+from tactile_graph_sources.readers.arrays.times import bare, time_among
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.words.names import named
 from tactile_graph_sources.readers.words.preamble import described_by
@@ -52,7 +53,13 @@ class Group(NamedTuple):
     check : callable
         Refuses arrays, by name, that are too large to be read.
     load : callable
-        Returns the values of the stack, from its array.
+        Returns the values of the stack, from its array and how it is packed.
+    texts : callable
+        Returns the texts in what is not read, by its name; none where it holds something else.
+    packing : callable
+        Returns how an array is packed, from the file, its name and itself.
+    framed : frozenset of str
+        Names of arrays whose first axis is known to be that of the frames.
     """
 
     word: str
@@ -60,10 +67,13 @@ class Group(NamedTuple):
     unread: Mapping[str, Unread]
     root: Any
     check: Callable[[Mapping[str, Any]], None]
-    load: Callable[[Any], Any]
+    load: Callable[[Any, Packing], Any]
+    texts: Callable[[str], Sequence[str]]
+    packing: Callable[[str, str, Any], Packing]
+    framed: frozenset[str] = frozenset()
 
 
-def _attributes_of(item: Any) -> dict[str, Any]:
+def attributes_of(item: Any) -> dict[str, Any]:
     """Return the attributes of a file, a group or an array, as far as they can be read."""
     found: dict[str, Any] = {}
     for key in () if item is None else item.attrs:
@@ -72,6 +82,11 @@ def _attributes_of(item: Any) -> dict[str, Any]:
         except Exception:  # of a type that the library does not know
             continue
     return found
+
+
+def packing(where: str, name: str, array: Any) -> Packing:
+    """Return how an array is packed, as its attributes say; raises as `packing_of`."""
+    return packing_of(where, name, array.dtype, attributes_of(array))
 
 
 def _values_beside(group: Group) -> Iterator[tuple[str, Any]]:
@@ -127,19 +142,35 @@ def held_in(reading: Reading, group: Group) -> Held:
     time = time_among(n for n in timed if n not in {*frames, name})
     read = {*(frames or [name]), time}
     group.check({n: a for n, a in {**numbers, **timed}.items() if n in read})
-    values = np.stack([numbers[n][()] for n in frames]) if frames else None
-    values = group.load(numbers[name]) if values is None else values
+    packed = {n: group.packing(where, n, numbers[n]) for n in frames or [name]}
+    loaded = [group.load(numbers[n], p) for n, p in packed.items()]
+    values = np.stack(loaded) if frames else loaded[0]
+    if packed[name].said:
+        reading.assume(f"values unpacked, as the file says: {packed[name].said}")
     times = None
     if time:
-        values_of, unit = timed[time][()].ravel(), _attributes_of(timed[time]).get("units")
-        times, time = seconds(values_of, _with_unit(time, unit))
-    attributes = {**_attributes_of(group.root), **_attributes_of(numbers[name])}
+        how = group.packing(where, time, timed[time])
+        times = how.unpacked(timed[time][()].ravel())
+        time = _with_unit(time, attributes_of(timed[time]).get("units"))
+    else:
+        times, time = _worded_times(reading, group)
+    attributes = {**attributes_of(group.root), **attributes_of(numbers[name])}
     attributes |= _values_beside(group)
     said = described_by(attributes)
     what = f"{group.word} {name!r}"
     if frames:
         what = f"{group.word}s {frames[0]!r} to {frames[-1]!r}"
-    return Held(values, what, said, times, time, bool(frames))
+    return Held(values, what, said, times, time, bool(frames) or name in group.framed)
+
+
+def _worded_times(reading: Reading, group: Group) -> tuple[NDArray[Any] | None, str]:
+    """Return times that are texts, and their name; those that are neither are told."""
+    several = {n: u for n, u in group.unread.items() if u.shape is None or math.prod(u.shape) > 1}
+    name = time_among(several)
+    texts = group.texts(name) if name else ()
+    if name and not texts:
+        reading.assume(f"times left out, as {name!r} is not read: {several[name]}")
+    return (np.array(texts), name) if len(texts) > 1 else (None, "")
 
 
 def _refuse_fields(

@@ -9,25 +9,25 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays import node_images
 from tactile_graph_sources.readers.arrays.datasets import Held, Unread, frames_of
-from tactile_graph_sources.readers.arrays.groups import Group, held_in, unread
-from tactile_graph_sources.readers.arrays.matlab import frames_first
+from tactile_graph_sources.readers.arrays.groups import TEXT, Group, held_in, packing, unread
+from tactile_graph_sources.readers.arrays.matlab import of_matlab
 from tactile_graph_sources.readers.head import Head
-from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.reading import OF_TIMES, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 
 _MARK = b"\x89HDF\r\n\x1a\n"
 _MATLAB = b"MATLAB 7.3"
-_REFERENCES = "references"
 _ITEMS = "#refs#/"
 """Where it keeps what its cell arrays hold."""
 LARGE, MOST_TIMES = 64_000_000, 200
 """Bytes that may be unpacked however few are written, and how many times these."""
-MOST_ITEMS, DEEPEST = 2_000, 40
+MOST_ITEMS, MOST_CELLS, DEEPEST = 2_000, 30_000, 40
 
 
 def recognises(head: Head) -> bool:
@@ -53,11 +53,11 @@ def read(reading: Reading) -> Iterator[Frame]:
             nodes = [n for n in names if f"{n}/values" in names]
             yield from node_images.read_node(reading, file, nodes)
         return
+    reading.refuse_settings(*OF_TIMES)
     held = _held(reading, h5py)
-    if reading.head.raw.startswith(_MATLAB):
-        # It counts the other way round.
-        values = frames_first(reading, held.values.T, held.what, held.times)
-        held = held._replace(values=values, known=True)
+    if reading.head.raw.startswith(_MATLAB):  # which counts the other way round
+        turned = np.swapaxes(held.values, -1, -2) if held.known else held.values.T
+        held = of_matlab(reading, held._replace(values=turned))
     yield from frames_of(reading, held)
 
 
@@ -87,10 +87,16 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
     try:
         with h5py.File(reading.path, "r") as file:
             sets, others = _datasets(where, h5py, file)
-            numbers = {n: d for n, d in sets.items() if d.dtype.kind in "buif"}
-            _refuse_cells(where, numbers, [n for n, u in others.items() if u.what == _REFERENCES])
+            cells = {n: d for n, d in sets.items() if isinstance(d, _Cells)}
             check = partial(_check_size, where)
-            group = Group("dataset", sets, others, file, check, lambda d: d[()])
+
+            def texts(name: str) -> list[str]:
+                return _texts(h5py, file[name]) if others[name].what == TEXT else []
+
+            group = Group(
+                "dataset", sets, others, file, check, lambda d, how: how.unpacked(d[()]),
+                texts, packing, frozenset(cells),
+            )  # fmt: skip
             return held_in(reading, group)
     except DataError:
         raise
@@ -98,13 +104,53 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
         raise DataError(where, f"the HDF5 file cannot be read: {str(error)[:120]}") from error
 
 
-def _refuse_cells(where: str, numbers: Mapping[str, Any], others: list[str]) -> None:
-    """Refuse a file that holds nothing but the items of one of MATLAB's cell arrays."""
-    named = [n for n in others if not n.startswith(_ITEMS)]
-    if named and numbers and all(n.startswith(_ITEMS) for n in numbers):
-        name = named[0]
-        told = f"{name!r} is a cell array; in MATLAB, make it a stack: {name} = cat(3, {name}{{:}})"
-        raise DataError(where, told)
+class _Cells:
+    """What a cell array of MATLAB refers to, matrices of one size, as one dataset."""
+
+    def __init__(self, items: list[Any]) -> None:
+        self.items = items
+        self.dtype: np.dtype[Any] = np.result_type(*{d.dtype for d in items})
+        self.shape: tuple[int, ...] = (len(items), *items[0].shape)
+        self.ndim, self.size = len(self.shape), len(items) * items[0].size
+        self.attrs: dict[str, Any] = {}
+
+    def __getitem__(self, key: tuple[()]) -> NDArray[Any]:
+        return np.stack([d[key] for d in self.items])
+
+
+def _referred(h5py: ModuleType, dataset: Any) -> list[Any]:
+    """Return what a dataset of references refers to; none where one leads nowhere."""
+    file, found = dataset.file, []
+    for reference in np.ravel(dataset[()]) if dataset.size <= MOST_CELLS else ():
+        if not (isinstance(reference, h5py.Reference) and reference):
+            return []
+        found.append(file[reference])
+    return found
+
+
+def _texts(h5py: ModuleType, dataset: Any) -> list[str]:
+    """Return the texts of a dataset: its items, MATLAB's rows of letters or its cells of them."""
+    if h5py.check_ref_dtype(dataset.dtype):
+        return [" ".join(_texts(h5py, item)) for item in _referred(h5py, dataset)]
+    values = dataset[()]
+    if _class_of(dataset) == "char":
+        return ["".join(map(chr, row)) for row in np.atleast_2d(values.T)]
+    return [v.decode("utf-8", "replace") if isinstance(v, bytes) else str(v) for v in values.flat]
+
+
+def _in_cells(h5py: ModuleType, dataset: Any) -> _Cells | Unread:
+    """Return what a dataset of references refers to, or why that is not read."""
+    name = dataset.name.rpartition("/")[2]
+    items = _referred(h5py, dataset)
+    if items and all(isinstance(d, h5py.Dataset) and d.shape is not None for d in items):
+        why = [_why_unread(h5py, d) for d in items]
+        if all(w is not None and w.what == TEXT for w in why):
+            return Unread(TEXT, "", dataset.shape)
+        numbers = all(w is None and d.dtype.kind in "buif" for w, d in zip(why, items, strict=True))
+        if numbers and len({d.shape for d in items}) == 1:
+            return _Cells(items)
+    told = f"in MATLAB, make it a stack: {name} = cat(3, {name}{{:}})"
+    return Unread("a cell array of unlike things", told, dataset.shape)
 
 
 def _datasets(where: str, h5py: ModuleType, file: Any) -> tuple[dict[str, Any], dict[str, Unread]]:
@@ -112,10 +158,13 @@ def _datasets(where: str, h5py: ModuleType, file: Any) -> tuple[dict[str, Any], 
     found: dict[str, Any] = {}
     others: dict[str, Unread] = {}
     names: set[str] = set()
-    n = 0
+    n = n_cells = 0
 
     def visit(name: str, item: Any) -> str | None:
-        nonlocal n
+        nonlocal n, n_cells
+        if name.startswith(_ITEMS):
+            n_cells += 1
+            return f"more than {MOST_CELLS} cells" if n_cells > MOST_CELLS else None
         n += 1
         if n > MOST_ITEMS:
             return f"more than {MOST_ITEMS} groups and datasets"
@@ -124,7 +173,13 @@ def _datasets(where: str, h5py: ModuleType, file: Any) -> tuple[dict[str, Any], 
         names.add(name)
         if isinstance(item, h5py.Dataset):
             why = _why_unread(h5py, item)
-            if why is None:
+            if h5py.check_ref_dtype(item.dtype):
+                cells = _in_cells(h5py, item)
+                if isinstance(cells, Unread):
+                    others[name] = cells
+                else:
+                    found[name] = cells
+            elif why is None:
                 found[name] = item
             else:
                 others[name] = why
@@ -153,7 +208,7 @@ def _why_unread(h5py: ModuleType, dataset: Any) -> Unread | None:
     if h5py.check_string_dtype(dataset.dtype) or _class_of(dataset) == "char":
         return unread(np.dtype("S1"), dataset.shape)
     if h5py.check_ref_dtype(dataset.dtype):
-        return Unread(_REFERENCES, "", dataset.shape)
+        return Unread("references", "", dataset.shape)
     return unread(dataset.dtype, dataset.shape)
 
 
@@ -165,6 +220,11 @@ def _class_of(dataset: Any) -> str:
 
 def _check_size(where: str, datasets: Mapping[str, Any]) -> None:
     """Refuse datasets that lie elsewhere, or are together far larger than what is written."""
+    datasets = {
+        f"{name}{{{k + 1}}}" if isinstance(d, _Cells) else name: one
+        for name, d in datasets.items()
+        for k, one in enumerate(d.items if isinstance(d, _Cells) else [d])
+    }
     for name, dataset in datasets.items():
         if dataset.is_virtual or dataset.external:
             told = f"dataset {name!r} lies in other files; save its values in this one"

@@ -54,9 +54,9 @@ def variables(path: Path) -> dict[str, Any]:
     Returns
     -------
     dict
-        Arrays of numbers without axes of length 1, texts, structs as dicts, and cell arrays and
-        arrays of structs as lists in MATLAB's order. What is none of these (complex and sparse
-        matrices, objects, functions) is an `Unread`, what is empty None.
+        Arrays of numbers without axes of length 1, texts, structs as dicts, and cell arrays,
+        arrays of structs and several rows of letters as lists in MATLAB's order. What is none of
+        these (complex and sparse matrices, objects, functions) is an `Unread`, what is empty None.
 
     Raises
     ------
@@ -167,7 +167,10 @@ def _value(word: int, shape: tuple[int, ...], rest: list[_Element], order: str, 
     if word & _COMPLEX:
         return Unread("complex", shape)
     if kind == _CHAR:
-        return _text(rest[0], order)
+        text = _text(rest[0], order)
+        if len(shape) != 2 or shape[0] < 2 or len(text) != math.prod(shape):
+            return text
+        return [text[row :: shape[0]] for row in range(shape[0])]
     return np.squeeze(_array(rest[0], shape, order)) if kind in _NUMBERS else None
 
 

@@ -18,11 +18,11 @@ from tactile_graph_sources.readers.arrays.datasets import (
     chosen,
     frames_of,
     is_stack,
-    time_among,
 )
 from tactile_graph_sources.readers.arrays.mat5 import DamagedError, Unread, variables
+from tactile_graph_sources.readers.arrays.times import time_among
 from tactile_graph_sources.readers.head import Head
-from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.reading import OF_TIMES, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.words.preamble import described_by
 
@@ -46,19 +46,35 @@ def read(reading: Reading) -> Iterator[Frame]:
         If the file is damaged, no stack or several could be meant, or its axes can be read two
         ways.
     """
+    reading.refuse_settings(*OF_TIMES)
     everything = list(_variables("", _loaded(reading)))
     found = [v for v in everything if not isinstance(v.value, Unread)]
-    arrays = {v.name: np.asarray(v.value) for v in found if not isinstance(v.value, str)}
+    arrays = {v.name: v.value for v in found if isinstance(v.value, np.ndarray)}
     if not any(n == reading.told.sensor for n in arrays):
         _refuse_unread(reading, everything, arrays)
     name = chosen(reading, {n: a.shape for n, a in arrays.items()}, "variable")
-    time = time_among(n for n, a in arrays.items() if 1 < a.size == max(a.shape))
-    times = arrays[time].ravel() if time else None
+    times, time = _times(reading, everything, arrays)
     said = described_by({v.bare: v.value for v in found})
-    what, values = f"variable {name!r}", arrays[name]
-    if not any(v.in_cells for v in found if v.name == name):
-        values = frames_first(reading, values, what, times)
-    yield from frames_of(reading, Held(values, what, said, times, time, known=True))
+    in_cells = any(v.in_cells for v in found if v.name == name)
+    held = Held(arrays[name], f"variable {name!r}", said, times, time, in_cells)
+    yield from frames_of(reading, of_matlab(reading, held))
+
+
+def _times(
+    reading: Reading, found: list[_Variable], arrays: dict[str, NDArray[Any]]
+) -> tuple[NDArray[Any] | None, str]:
+    """Return the times, numbers before texts, and their name; those that are not read are told."""
+    time = time_among(n for n, a in arrays.items() if 1 < a.size == max(a.shape))
+    if time:
+        return arrays[time].ravel(), time
+    texts = {v.name: v.value for v in found if isinstance(v.value, list)}
+    if time := time_among(texts):
+        return np.array(texts[time]), time
+    unread = {v.name: v.value for v in found if isinstance(v.value, Unread)}
+    if time := time_among(unread):
+        kind = unread[time].kind
+        reading.assume(f"times left out, as {time!r} is {kind} (save it as numbers of seconds)")
+    return None, ""
 
 
 def _refuse_unread(
@@ -94,7 +110,7 @@ def _loaded(reading: Reading) -> dict[str, Any]:
 
 
 class _Variable(NamedTuple):
-    """An array of numbers, or a text; ``name`` is ``a.b`` within a struct.
+    """An array of numbers, a text, or a list of texts; ``name`` is ``a.b`` within a struct.
 
     ``in_cells`` says that its first axis runs over the cells of a cell array, or over structs.
     """
@@ -112,6 +128,8 @@ def _variables(name: str, value: Any) -> Iterator[_Variable]:
     if isinstance(value, dict):
         for key, inner in value.items():
             yield from _variables(f"{name}.{key}" if name else str(key), inner)
+    elif isinstance(value, list) and value and all(isinstance(v, str) for v in value):
+        yield _Variable(name, value)
     elif isinstance(value, list):
         yield from _cells(name, value)
     elif value is not None:
@@ -122,11 +140,28 @@ def _cells(name: str, cells: list[Any]) -> Iterator[_Variable]:
     """Yield what cells or structs of one kind hold, one behind the other."""
     if cells and all(isinstance(c, dict) and c.keys() == cells[0].keys() for c in cells):
         for key in cells[0]:
-            yield from _cells(f"{name}.{key}", [c[key] for c in cells])
+            yield from _variables(f"{name}.{key}", [c[key] for c in cells])
         return
     arrays = [c for c in cells if isinstance(c, np.ndarray)]
     if len(arrays) == len(cells) and len({a.shape for a in arrays}) == 1:
         yield _Variable(name, np.stack(arrays), in_cells=True)
+
+
+def of_matlab(reading: Reading, held: Held) -> Held:
+    """Return what a variable of MATLAB holds with its frames along the first axis.
+
+    Whether they lie there is asked of its values where it has three equal sides.
+
+    Raises
+    ------
+    DataError
+        As `frames_first`.
+    """
+    values = held.values
+    if not held.known:
+        values = frames_first(reading, values, held.what, held.times)
+    cube = values.ndim == 3 and len({*values.shape}) == 1 and not held.known
+    return held._replace(values=values, known=not cube, of_matlab=True)
 
 
 def frames_first(
@@ -149,8 +184,7 @@ def frames_first(
     DataError
         If neither times, nor a square matrix, nor one long axis tells.
     """
-    told = reading.told
-    if values.ndim != 3 or (told.rows is not None and told.columns is not None):
+    if values.ndim != 3 or reading.told.shape:
         return values
     first, middle, last = values.shape
     votes = {len(times)} & {first, last} if times is not None and first != last else set()
@@ -160,10 +194,13 @@ def frames_first(
     if not votes and longest > LONGEST_SIDE * max(middle, min(first, last)):
         votes = {longest}
     if not votes:
+        remedy = "give rows and columns"
+        if first == middle == last:
+            remedy = f"put frames first, in MATLAB permute(array, [3 1 2]), and {remedy}"
         raise DataError(
             str(reading.path),
             f"{what} has shape {values.shape}: {last} frames of {first} x {middle} along the last "
-            f"axis, or {first} frames of {middle} x {last} along the first; give rows and columns",
+            f"axis, or {first} frames of {middle} x {last} along the first; {remedy}",
         )
     return values if votes == {first} else np.moveaxis(values, -1, 0)
 

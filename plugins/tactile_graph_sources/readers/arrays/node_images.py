@@ -77,6 +77,7 @@ def read_node(reading: Reading, group: Any, names: list[str]) -> Iterator[Frame]
         If several nodes could be meant, there is none of that name or without an image, or the
         file is damaged.
     """
+    reading.pass_settings()
     where = str(reading.path)
     node = _chosen(reading, group, names)
     try:

@@ -41,6 +41,7 @@ def read(reading: Reading) -> Iterator[Any]:
     DataError
         If the array is damaged, holds objects, or has the wrong number of axes.
     """
+    reading.refuse_settings()
     values = _stack(reading)
     reading.report.expect(len(values))
     yield from reading.frames(values)

@@ -23,15 +23,14 @@ from tactile_graph_sources.readers.arrays.datasets import (
     is_stack,
     laid_of,
     numbered,
-    seconds,
-    time_among,
 )
 from tactile_graph_sources.readers.arrays.stack import Axes, stack_of
+from tactile_graph_sources.readers.arrays.times import time_among
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.choosing.others import document_in
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.laid import Laid, laid_in
-from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.reading import OF_TIMES, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.words.own_number import NO_NUMBER
 from tactile_graph_sources.readers.words.preamble import described_by
@@ -65,9 +64,11 @@ def read(reading: Reading) -> Iterator[Any]:
     with opened(reading.path) as file:
         arrays = Archive(str(reading.path), file)
         if {"cap", "ftir"} <= arrays.names.keys():
+            reading.refuse_settings()
             arrays.check_sizes(("cap", "ftir"))
             yield from capcontact.frames(reading, arrays.load("cap"), arrays.load("ftir"))
         elif "values" in arrays.names:
+            reading.pass_settings()
             ours = _ours(reading, arrays)
             reading.report.expect(len(ours.values))
             yield from _frames_alone(ours, reading, 0, len(ours.values))
@@ -261,14 +262,15 @@ def _checked(reading: Reading, arrays: Archive, name: str, axes: Axes = "asked")
 
 def _foreign(reading: Reading, arrays: Archive) -> Held:
     """Return the only stack of another's archive, its times beside it."""
+    reading.refuse_settings(*OF_TIMES)
     values, what, known = _only(reading, arrays)
     outlines = {name: arrays.outline(name) for name in arrays.names}
-    time = time_among(n for n, (s, t) in outlines.items() if len(s) == 1 and t.kind in "iufMm")
+    lines = {n: t.kind for n, (s, t) in outlines.items() if len(s) == 1}
+    time = time_among(n for n, kind in lines.items() if kind in "iufMm")
+    time = time or time_among(n for n, kind in lines.items() if kind in "US")
     small = [n for n, (s, t) in outlines.items() if math.prod(s) in (1, 2) and t.kind in "iufUS"]
     said = described_by({n: arrays.load(n) for n in small})
     times = arrays.load(time) if time else None
-    if times is not None:
-        times, time = seconds(times, time)
     return Held(values, what, said, times, time, known)
 
 

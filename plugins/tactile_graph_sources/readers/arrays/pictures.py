@@ -51,6 +51,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     DataError
         If a picture cannot be read, or its colours are no shades of one.
     """
+    reading.refuse_settings()
     if reading.head.raw.startswith(b"PK"):
         with opened(reading.path) as archive:
             yield from _of_archive(reading, archive)
@@ -70,6 +71,7 @@ def _of_archive(reading: Reading, archive: zipfile.ZipFile) -> Iterator[Frame]:
 
 def read_folder(reading: Reading) -> Iterator[Frame]:
     """Yield a frame for each picture of a folder, in the order of the numbers in their names."""
+    reading.refuse_settings()
     names = pictures_in(reading.path)
     reading.recognised(f"a folder of {len(names)} pictures, in the order of their numbers")
     reading.report.expect(len(names))

@@ -24,6 +24,7 @@ VERY_ALIKE, CLEARER = 1.5, 2.0
 """The same where neither is so: at most, and times more than the axes of the other reading."""
 MAD_TO_SD = 1.4826
 _AS_REAL = "such, in Python: numpy.save('out.npy', array.{})"
+ASSUMED_FIRST = "frames assumed to lie along the first axis, {} of {} x {}"
 LAST_IS_TIME = 4
 """Times the other two: a last axis longer than that is more likely the frames'."""
 
@@ -79,6 +80,8 @@ def stack_of(
             array = array.transpose(0, 2, 1) if by_column else array
         elif array.ndim == 3 and array.shape[:2] == (rows, columns) != array.shape[1:]:
             array = np.moveaxis(array, -1, 0)
+        elif axes == "asked" and array.shape == (rows, rows, rows):
+            array = _of_equal_sides(reading, array)
     if array.ndim in (2, 3) and 0 in array.shape:
         raise DataError(where, f"{name} has shape {array.shape}: it holds no cell")
     if array.ndim == 0:
@@ -182,6 +185,17 @@ def _refuse_frames_in_a_row(where: str, array: NDArray[Any], name: str) -> None:
         )
 
 
+def _of_equal_sides(reading: Reading, array: NDArray[Any]) -> NDArray[Any]:
+    """Return a stack of three equal sides with its frames first, as its values say; it is told."""
+    n, told = len(array), _axes_told(array)
+    if told == "last":
+        reading.assume(f"frames taken to lie along the last axis of {n}, as the values say")
+        return np.moveaxis(array, -1, 0)
+    if n > 1 and not told:
+        reading.assume(ASSUMED_FIRST.format(n, n, n))
+    return array
+
+
 def _ask_axes(reading: Reading, array: NDArray[Any], name: str, axes: Axes) -> None:
     """Refuse a stack whose frames as likely lie along the last axis; what nothing says is told."""
     where, shape = str(reading.path), array.shape
@@ -202,5 +216,4 @@ def _ask_axes(reading: Reading, array: NDArray[Any], name: str, axes: Axes) -> N
             f"{n} x {rows} along the last axis; give rows and columns",
         )
     if axes == "asked" and not told and min(n, rows, columns) > 1:
-        what = f"frames assumed to lie along the first axis, {n} of {rows} x {columns}"
-        reading.assume(what)
+        reading.assume(ASSUMED_FIRST.format(n, rows, columns))

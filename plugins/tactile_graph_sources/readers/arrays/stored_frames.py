@@ -21,6 +21,7 @@ BY_FILES = f"by the files in it, {METADATA} or {JOURNAL}"
 
 def read(reading: Reading) -> Iterator[Any]:
     """Yield the frames of a store as far as it is whole; raises what `read_store` raises."""
+    reading.pass_settings()
     reading.recognised(BY_FILES)
     frames = read_store_in_stacks if reading.in_stacks else read_store
     yield from as_told(reading, frames(reading.path, reading.report))

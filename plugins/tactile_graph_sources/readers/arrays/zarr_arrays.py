@@ -20,9 +20,17 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays import node_images
 from tactile_graph_sources.readers.arrays.datasets import Held, Unread, frames_of
-from tactile_graph_sources.readers.arrays.groups import Group, held_in, unread
+from tactile_graph_sources.readers.arrays.groups import (
+    TEXT,
+    Group,
+    attributes_of,
+    held_in,
+    packing,
+    unread,
+)
+from tactile_graph_sources.readers.arrays.packing import Packing, packing_of
 from tactile_graph_sources.readers.head import Head
-from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.reading import OF_TIMES, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.stores.layout import FORMAT as OURS
 from tactile_graph_sources.stores.layout import JOURNAL, METADATA, load_zarr, read_metadata
@@ -66,6 +74,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     UsageError
         If Zarr is not installed.
     """
+    reading.refuse_settings(*OF_TIMES)
     zarr = load_zarr()
     where = str(reading.path)
     try:
@@ -99,7 +108,26 @@ def _held(reading: Reading, zarr: Any) -> Held:
             else:
                 others[name] = why
     check = partial(_check_size, where)
-    return held_in(reading, Group("array", arrays, others, whole, check, _loaded))
+
+    def texts(name: str) -> list[str]:
+        if others[name].what != TEXT or whole is None:
+            return []
+        return [str(text) for text in np.ravel(whole[name][()])]
+
+    group = Group("array", arrays, others, whole, check, _loaded, texts, _packing)
+    return held_in(reading, group)
+
+
+def _packing(where: str, name: str, array: Any) -> Packing:
+    """Return how an array is packed; xarray writes the number for no value as that of Zarr 2.
+
+    Zarr's own 0, which others leave there, stands for no missing value.
+    """
+    said = attributes_of(array)
+    fill = array.fill_value if array.metadata.zarr_format == 2 else None
+    if "_FillValue" in said or "_ARRAY_DIMENSIONS" not in said or not fill:
+        return packing(where, name, array)
+    return packing_of(where, name, array.dtype, {**said, "_FillValue": fill})
 
 
 def _bare_name(path: Path) -> str:
@@ -164,10 +192,11 @@ def _check_size(where: str, arrays: Mapping[str, Any]) -> None:
 class _OnDisk:
     """A stack of which a few pieces at a time are in memory, as an array to whoever slices it."""
 
-    def __init__(self, array: Any) -> None:
+    def __init__(self, array: Any, packing: Packing) -> None:
         self._array = array
+        self._unpacked = packing.unpacked
         self.shape: tuple[int, ...] = tuple(array.shape)
-        self.dtype: np.dtype[Any] = np.dtype(array.dtype)
+        self.dtype: np.dtype[Any] = np.dtype(array.dtype if packing == Packing() else np.float64)
         self.ndim = len(self.shape)
         self._step = _pieces(array)[0]
         self._start = 0
@@ -177,7 +206,7 @@ class _OnDisk:
         return self.shape[0]
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
-        return np.asarray(self._array[()], dtype)
+        return np.asarray(self._unpacked(np.asarray(self._array[()])), dtype)
 
     def __getitem__(self, key: Any) -> NDArray[Any]:
         first, rest = (key[0], key[1:]) if isinstance(key, tuple) else (key, ())
@@ -189,12 +218,15 @@ class _OnDisk:
         if read is None or not self._start <= low <= high <= self._start + len(read):
             self._start = low // self._step * self._step
             end = min(len(self), -(-high // self._step) * self._step)
-            self._read = read = np.asarray(self._array[self._start : end])
+            read = self._unpacked(np.asarray(self._array[self._start : end]))
+            self._read = read
         return read[(slice(low - self._start, high - self._start), *rest)]
 
 
-def _loaded(array: Any) -> Any:
-    return _OnDisk(array) if array.ndim == 3 else np.asarray(array[()])
+def _loaded(array: Any, packing: Packing) -> Any:
+    if array.ndim == 3:
+        return _OnDisk(array, packing)
+    return packing.unpacked(np.asarray(array[()]))
 
 
 FORMAT = RecordingFormat("Zarr of another program", recognises, read, of_folders=True)

@@ -30,6 +30,7 @@ def read(reading: Reading) -> Iterator[Frame]:
 
     Times count from the first record; the phone's own time stamp is kept as device time.
     """
+    reading.refuse_settings()
     rows, columns = reading.told.rows or SHAPE[0], reading.told.columns or SHAPE[1]
     reading.told.agree(str(reading.path), rows, columns)
     reading.recognised("lines of participant;hand;finger;task;-1;sec,nsec,values")

@@ -65,6 +65,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     A picture whose window needs several pages is put together. Pages without a ``Pict-No.`` are
     summaries and left out, and so are the forces in the last row and column.
     """
+    reading.refuse_settings()
     reading.report.expect(reading.count_bytes(b"Pict-No"))
     state = _State()
     for number, line in reading.text():

@@ -49,6 +49,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     turned by 180 degrees against that table: with (x, y) the centre of pressure in our pad
     coordinates (from the top left, y down) and W the mat's width, the vendor prints (W - x, y).
     """
+    reading.refuse_settings()
     lines = reading.text()
     quantity, factor, n_values = _header(reading, lines)
     mat = _mat(reading, n_values)

@@ -32,6 +32,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     DataError
         If the file is no JSON, or has no ``snapshots``.
     """
+    reading.refuse_settings()
     where = str(reading.path)
     try:
         with reading.path.open(encoding=reading.head.encoding) as file:

@@ -57,6 +57,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     ``B`` says that the sensor has no cell there; such cells are invalid. Times are those of the
     ``Frame`` lines, else the frame's number times ``SECONDS_PER_FRAME``.
     """
+    reading.refuse_settings()
     lines = reading.text()
     keys: dict[str, str] = {}
     for _, line in lines:

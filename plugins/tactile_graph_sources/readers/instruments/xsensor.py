@@ -57,6 +57,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     ``GROUP`` blocks repeat cells of the sensor before them and are left out. Times count from
     the first frame of the file.
     """
+    reading.refuse_settings()
     reading.report.expect(reading.count_bytes(b"\nSENSOR"))
     separator = _separator(reading.head)
     dialect = Dialect(separator, decimal_comma=separator != ",")

@@ -57,6 +57,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     if topic.is_empty:
         raise DataError(where, f"no message of topic {name} can be read: {topic.damage[0][1]}")
     entries = topic.entries(where)
+    reading.refuse_settings(*(["time_unit"] if topic.own_times else []))
     why = f"topic {name} of {topic.kind}"
     damage = [
         Damage(before, name, f"a message is damaged: {what}") for before, what in topic.damaged()
@@ -77,6 +78,8 @@ class _Topic:
         """Time and trouble of each message that cannot be read."""
         self.gap = False
         """Whether messages before the next one are lost."""
+        self.own_times = False
+        """Whether times are those that the messages say, not those of the log."""
 
     @property
     def readable(self) -> bool:
@@ -112,6 +115,7 @@ class _Topic:
         if not self._json:
             return Entries(values, times, "time_s", Described(), "an array a message", gaps)
         found = entries_of(where, values)
+        self.own_times = found.times is not None
         return found._replace(
             times=found.times or times,
             time_name=found.time_name or "time_s",

@@ -46,6 +46,12 @@ def read(reading: Reading) -> Iterator[Frame]:
     folder, names = reading.path, files_in(reading.path)
     kind = format_of(Head.of(folder / names[0], reading.told)).name
     reading.recognised(f"{len(names)} files in the order of their numbers, the first a {kind}")
+    yield from of_files(reading, names)
+
+
+def of_files(reading: Reading, names: list[str]) -> Iterator[Frame]:
+    """Yield the frames of files of a folder one after the other; raises what `read` raises."""
+    folder = reading.path
     first: dict[str, tuple[str, tuple[int, ...]]] = {}
     single = True
     for name in names:

@@ -26,7 +26,7 @@ from tactile_graph.errors import one_of
 from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import counts_up, spacing
-from tactile_graph_sources.readers.tables.layout import Layout, are_days, several_units, timed
+from tactile_graph_sources.readers.tables.layout import Layout, days_of, several_units, timed
 from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
 from tactile_graph_sources.readers.tables.table import Table, table_of
 from tactile_graph_sources.readers.words.counter import runs_over
@@ -137,7 +137,7 @@ def _roles(table: Table, told: ColumnsTold) -> dict[str, int]:
         if not np.isfinite(numbers).all() or (numbers % 1 != 0).any() or down:
             del roles["frame"]
     if "time" not in roles and not table.clocks:
-        days = [k for k in table.named.others if are_days(table.rows[:, k])]
+        days = [k for k in table.named.others if days_of(table.rows[:, k])]
         roles.update([("time", k) for k in days[:1]])
     if "time" in roles and told.time_format:
         roles[_CLOCK] = roles.pop("time")

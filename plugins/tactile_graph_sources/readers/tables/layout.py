@@ -17,6 +17,8 @@ from tactile_graph_sources.readers.words.preamble import Described
 _DAY_S = 86400.0
 _DAYS, _LONGEST_STEP = (20_000.0, 80_000.0), 2e-4
 """From 1954 to 2119, and 17 seconds."""
+_DAYS_TO_1900 = 693_960.0
+"""What MATLAB's days are more than those of spreadsheets."""
 
 
 @dataclass(frozen=True)
@@ -152,11 +154,19 @@ def timed(base: Layout, table: Table) -> Layout:
     return replace(base, time_factor=factor, assumed=(*base.assumed, note))
 
 
-def are_days(times: Numbers) -> bool:
-    """Return whether times are days since 1900, as spreadsheets keep dates.
+def days_of(times: Numbers) -> str:
+    """Return how times count days, as spreadsheets or MATLAB keep dates; empty where they do not.
 
     As seconds they would be of a recording of more than 5000 frames a second.
     """
+    if _are_days(times):
+        return "days since 1900, as spreadsheets count them"
+    if _are_days(times - _DAYS_TO_1900):
+        return "days since the year 0, as MATLAB's datenum counts them"
+    return ""
+
+
+def _are_days(times: Numbers) -> bool:
     steps = np.diff(times)
     low, high = _DAYS
     return bool(
@@ -186,8 +196,8 @@ def unit_of(times: Numbers) -> tuple[float, str]:
     """Return the factor and the name of the unit that times are most likely in."""
     steps = np.diff(times)
     steps = steps[steps > 0]
-    if are_days(times):
-        return _DAY_S, "days since 1900, as spreadsheets count them"
+    if days := days_of(times):
+        return _DAY_S, days
     if len(times) and times[-1] > 1e17:
         return 1e-9, "nanoseconds"
     if len(times) and times[-1] > 1e14:

@@ -24,7 +24,7 @@ from tactile_graph_sources.readers.tables.layout import assumed_unit
 from tactile_graph_sources.readers.tables.sensors import chosen, labels_of_lines
 from tactile_graph_sources.readers.words.compact import stamps_s
 from tactile_graph_sources.readers.words.dialect import clock_s
-from tactile_graph_sources.readers.words.names import ROLES, named
+from tactile_graph_sources.readers.words.names import ROLES, SECONDS, named
 from tactile_graph_sources.readers.words.preamble import PAIRS, Described, described_by
 
 FEW_LISTS, LONGEST_LIST = 200_000, 2_000_000
@@ -103,6 +103,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     DataError
         If the file is no JSON, holds no frames, or does not say their shape.
     """
+    reading.refuse_settings("time_unit")
     damage: list[Damage] = []
     content = _content(reading, damage)
     yield from frames_of(
@@ -132,7 +133,7 @@ def frames_of(reading: Reading, entries: Entries, damage: Sequence[Damage] = ())
     reading.told.agree(where, *shape)
     reading.recognised(entries.why, entries.said.notes)
     reading.report.expect(len(arrays))
-    entries = _without_stamps(entries)
+    entries = entries if reading.told.of_columns.time_unit else _without_stamps(entries)
     factor = _time_factor(reading, entries)
     for k, array in enumerate(arrays):
         while left and left[-1].n_before <= k:
@@ -464,6 +465,15 @@ def _without_stamps(entries: Entries) -> Entries:
 def _time_factor(reading: Reading, entries: Entries) -> float:
     if not entries.times:
         return 1.0
+    unit = reading.told.of_columns.time_unit
+    texts = [t for t in entries.times if isinstance(t, str) and t.strip() and _number(t) is None]
+    if texts and unit:
+        told = f"{entries.time_name!r} holds {texts[0][:30]!r}, a text; leave out time_unit"
+        raise DataError(str(reading.path), told)
+    if odd := next((t for t in texts if clock_s(t) is None), ""):
+        reading.assume(f"times left out, as {odd[:30]!r} is no time that is known")
+    if unit:
+        return SECONDS[unit]
     said = named((entries.time_name.rpartition(".")[2], ""))
     if said.time_factor is not None:
         return said.time_factor

@@ -72,7 +72,7 @@ class Stamps:
 
     def _clock(self, text: str) -> float:
         given = self._layout.time_format
-        at = _by_format(text, given) if given else clock_s(text)
+        at = by_format(text, given) if given else clock_s(text)
         if at is None:
             raise ValueError(f"{text.strip()[:30]!r} is no time of day")
         if at + self._days < self._last - _DAY_S / 2:
@@ -82,7 +82,8 @@ class Stamps:
         return round(self._last - self._first, 6)
 
 
-def _by_format(text: str, given: str) -> float | None:
+def by_format(text: str, given: str) -> float | None:
+    """Return a date or time of day in seconds, as `strptime` takes it; None where it is none."""
     # As a number 00:09:05 is written 905.
     text = text.strip().zfill(6) if given == HHMMSS else text
     try:

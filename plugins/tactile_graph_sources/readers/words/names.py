@@ -23,7 +23,7 @@ _UNITS_OF_TIME = {
     1e-9: "ns nsec nsecs nanos nanosecond nanoseconds nanosekunden nanosecondes",
     60.0: "min mins minute minutes minuten minutos minuti",
     3600.0: "h hr hrs hour hours std stunde stunden heures horas ore",
-    86400.0: "d day days tag tage jour jours días dias giorni",
+    86400.0: "d day days tag tage jour jours días dias giorni datenum",
 }
 SECONDS = {unit: seconds for seconds, units in _UNITS_OF_TIME.items() for unit in units.split()}
 """Seconds in the units of time that files spell."""
@@ -35,7 +35,7 @@ _ROLES = {
     "time": "time t ts timestamp time_stamp seconds elapsed elapsed_time millis micros ms us date "
     "datetime date_time clock epoch epoch_time unix unix_time zeit zeitstempel uhrzeit temps heure "
     "horodatage tiempo hora tempo ora timestamps zeitpunkt instant momento tijd tid czas stamp "
-    "systime system_time host_time device_time",
+    "systime system_time host_time device_time datenum",
     "row": "row r y i rows row_index zeile reihe ligne rang fila riga line linha rij rad wiersz",
     "column": "column col c x j columns col_index column_index spalte colonne columna colonna "
     "coluna kolom kolumn kolumna",
@@ -86,6 +86,14 @@ class ColumnsTold(NamedTuple):
     cells: str = ""
     time_unit: str = ""
     time_format: str = ""
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """The settings that say something, as the source calls them."""
+        names = zip(self._fields, self, strict=True)
+        return tuple(
+            n if n.startswith(("time_", "cells")) else f"{n}_column" for n, v in names if v
+        )
 
 
 NOTHING_TOLD = ColumnsTold()

@@ -59,6 +59,13 @@ class Told:
             settings["pitch_cm"] = (float(pitch), float(pitch))
         return cls(of_columns=columns_told, **settings)
 
+    @property
+    def shape(self) -> tuple[int, int] | None:
+        """Rows and columns of a frame; None unless both are told."""
+        if self.rows is None or self.columns is None:
+            return None
+        return self.rows, self.columns
+
     def laid_out(self, cells: NDArray[Any], rows: int, columns: int) -> NDArray[Any]:
         """Return cells in a row as a matrix, by the order in which they come."""
         if self.order == "columns":

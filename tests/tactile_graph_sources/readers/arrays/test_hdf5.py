@@ -165,3 +165,48 @@ def test_a_name_that_looks_like_a_number_is_typed_in_quotes(tmp_path: Path) -> N
     with pytest.raises(DataError, match="several datasets") as got:
         frames_of(made(tmp_path / "a.h5", two))
     assert "(as typed: --with 'sensor=\"08\"')" in str(got.value)
+
+
+def matlab_73(path: Path, items: list[np.ndarray], **variables: Any) -> Path:
+    """Write what MATLAB 7.3 does of a cell array ``frames`` and of other variables."""
+    with h5py.File(path, "w", userblock_size=512) as file:
+        held = {f"#refs#/{chr(97 + k)}": m.T for k, m in enumerate(items)}
+        for name, values in {**held, **variables}.items():
+            file[name] = values
+        refs = np.array([[file[name].ref for name in held]], dtype=h5py.ref_dtype)
+        file.create_dataset("frames", data=refs.T).attrs["MATLAB_class"] = np.bytes_("cell")
+    with path.open("r+b") as raw:
+        raw.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
+    return path
+
+
+def test_the_matrices_of_a_cell_array_of_matlab_are_the_frames(tmp_path: Path) -> None:
+    path = matlab_73(tmp_path / "a.mat", [*OBLONG], t=0.1 * np.arange(12)[None])
+    for settings in ({}, {"sensor": "frames"}):
+        frames, _ = frames_of(path, **settings)
+        np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+        assert frames[3].time_s == pytest.approx(0.3)
+
+
+def test_what_a_cell_array_of_matlab_holds_is_never_offered_alone(tmp_path: Path) -> None:
+    path = matlab_73(tmp_path / "a.mat", [OBLONG[0], OBLONG[1, :4]])
+    with pytest.raises(DataError, match=r"its datasets: frames \(.*frames = cat\(3, frames") as got:
+        frames_of(path)
+    assert "#refs#" not in str(got.value)
+    path = matlab_73(tmp_path / "b.mat", [*OBLONG], p=OBLONG)
+    with pytest.raises(DataError, match=r"several datasets could be it \(frames .*, p \(") as got:
+        frames_of(path)
+    assert "#refs#" not in str(got.value)
+
+
+def test_texts_in_a_cell_array_of_matlab_are_times(tmp_path: Path) -> None:
+    path = matlab_73(tmp_path / "a.mat", [*OBLONG])
+    with h5py.File(path, "a") as file:
+        for k in range(12):
+            letters = np.array([[ord(c)] for c in f"12:00:{k:02d}.5"], np.uint16)
+            file[f"#refs#/t{k}"] = letters
+            file[f"#refs#/t{k}"].attrs["MATLAB_class"] = np.bytes_("char")
+        refs = np.array([[file[f"#refs#/t{k}"].ref for k in range(12)]], dtype=h5py.ref_dtype)
+        file["time"] = refs
+    frames, _ = frames_of(path)
+    assert [f.time_s for f in frames] == [1.0 * k for k in range(12)]

@@ -16,7 +16,7 @@ from hypothesis.extra import numpy as hnp
 from scipy.io import loadmat
 from scipy.sparse import csc_matrix
 
-from helpers_dialects import cell_array, matlab
+from helpers_dialects import OBLONG, cell_array, matlab
 from helpers_recordings import frames_of, write
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.arrays import mat5
@@ -174,3 +174,16 @@ def test_a_packed_part_that_is_damaged_says_so(tmp_path: Path) -> None:
     packed = head + np.array([15, len(data)], "<u4").tobytes() + data[:-6] + b"\1\2\3\4\5\6"
     with pytest.raises(DamagedError):
         read(packed, tmp_path)
+
+
+def test_the_order_of_cells_in_a_row_is_told_where_it_may_be_matlabs(tmp_path: Path) -> None:
+    """What ``reshape(frames, [], n).'`` gives comes column by column."""
+    order = "order=columns where they come column by column, as MATLAB's reshape puts them"
+    path = write(tmp_path, matlab(p=OBLONG.transpose(0, 2, 1).reshape(len(OBLONG), -1)))
+    with pytest.raises(DataError, match=rf"give rows and columns \(and {order}\)"):
+        frames_of(path)
+    _, report = frames_of(path, rows=6, columns=10)
+    assert report.counts[f"recordings with cells assumed to come row by row ({order})"] == 1
+    frames, report = frames_of(path, rows=6, columns=10, order="columns")
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+    assert not any("row by row" in what for what in report.counts)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from helpers_dialects import matlab
 from helpers_recordings import frames_of, npy_bytes, npz_bytes, write
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
@@ -72,3 +73,21 @@ def test_frames_that_the_project_wrote_lie_along_the_first_axis_whatever_their_s
     frames, report = frames_of(tmp_path / "a.npz")
     np.testing.assert_array_equal([f.image.values for f in frames], values)
     assert not any("axis" in what for what in report.counts)
+
+
+def test_the_axis_of_frames_of_three_equal_sides_is_told(tmp_path: Path) -> None:
+    noise, told = np.random.default_rng(0).normal(20, 1, (9, 9, 9)), moving(16, 16, 16)
+    assumed = "recordings with frames assumed to lie along the first axis, 9 of 9 x 9"
+    for content in (npy_bytes(noise), npz_bytes(frames=noise), matlab(p=noise)):
+        frames, report = frames_of(write(tmp_path, content), rows=9, columns=9)
+        np.testing.assert_array_equal([f.image.values for f in frames], noise)
+        assert report.counts[assumed] == 1
+    last = np.moveaxis(told, 0, -1)
+    for content in (npy_bytes(last), npz_bytes(frames=last), matlab(p=last)):
+        frames, report = frames_of(write(tmp_path, content), rows=16, columns=16)
+        np.testing.assert_array_equal([f.image.values for f in frames], told)
+        assert report.counts[
+            "recordings with frames taken to lie along the last axis of 16, as the values say"
+        ]
+    with pytest.raises(DataError, match=r"put frames first, in MATLAB permute\(array, \[3 1 2\]\)"):
+        frames_of(write(tmp_path, matlab(p=noise)))

@@ -385,3 +385,12 @@ def test_types_that_need_their_definitions_are_not_read() -> None:
     assert decoder_of("protobuf", "sensor_msgs/Image") is None
     assert decoder_of("cdr", "geometry_msgs/msg/Pose") is None
     assert decoder_of("cdr", "std_msgs/msg/StringMultiArray") is None
+
+
+def test_a_unit_is_told_of_times_in_messages_alone(tmp_path: Path) -> None:
+    rows = [json.dumps({"time": k, "data": f.tolist()}).encode() for k, f in enumerate(OBLONG)]
+    own = log(tmp_path / "own.mcap", pad=("json", "", rows))
+    assert frames_of(own, time_unit="ms")[0][3].time_s == pytest.approx(3e-3)
+    bare = log(tmp_path / "bare.mcap", pad=("json", "", in_json(OBLONG)))
+    with pytest.raises(DataError, match="time_unit: its times, if it has any, are in the unit"):
+        frames_of(bare, time_unit="ms")
