@@ -346,6 +346,8 @@ class AnyPad:
             its = mixed(weighed, dict.fromkeys(weighed, 1.0))
         elif best != EVEN:
             its = changed(its, pressures={best: 1.0})
+        if readings.without_foam:
+            its = changed(its, pressures=on_foam(its.pressures))
         total = sum(shares.values())
         pressed = sum(share * self._wider(part) for part, share in shares.items()) / total
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
@@ -478,6 +480,12 @@ class AnyPad:
 def _first(top: Likeliest, count: int) -> Mode:
     """Return the first numbers of a top, the others known."""
     return Mode(top.mode.p[:count].copy(), top.mode.root[:count, :count].copy(), top.mode.height)
+
+
+def on_foam(pressures: Mapping[str, float]) -> dict[str, float]:
+    """Return how likely each pressure is, where an even face's readings had foam undone."""
+    found = {part: chance for part, chance in pressures.items() if part != EVEN}
+    return {FOAM: pressures.get(EVEN, 0.0) + found.pop(FOAM, 0.0), **found}
 
 
 def shared_by(tops: Iterable[Likeliest], touched: int) -> float:

@@ -154,7 +154,9 @@ def _laid_open(
     turn_on = readings.turn_on
     if turn_on is not None:
         turn_on = turn_on._replace(hidden=math.inf)  # where these begin says nothing of the law
-    found = readings._replace(logs=logs, least_log=math.log(least), turn_on=turn_on)
+    found = readings._replace(
+        logs=logs, least_log=math.log(least), turn_on=turn_on, without_foam=True
+    )
     return found.with_states(states)
 
 

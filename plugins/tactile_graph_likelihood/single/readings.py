@@ -56,9 +56,9 @@ class Readings(NamedTuple):
     ``grid`` holds left and top edge of the first element, pitch and side of an element, and two
     zeros (a search's own); ``logs`` and ``states`` are as in `element_terms`. ``stretch`` is the
     height of a cell over its width, where it is nearly 1 and was taken for that, cells being as
-    large as they are; ``least_log`` the
-    logarithm of the least load that shows, where the readings themselves say it; ``turn_on`` what
-    is told of the law there, where readings are by one.
+    large as they are; ``least_log`` the logarithm of the least load that shows, where the readings
+    themselves say it; ``turn_on`` what is told of the law there, where readings are by one;
+    ``without_foam`` is whether foam was undone.
     """
 
     grid: Values
@@ -68,6 +68,7 @@ class Readings(NamedTuple):
     stretch: float = 1.0
     least_log: float | None = None
     turn_on: TurnOn | None = None
+    without_foam: bool = False
 
     @property
     def size_cm(self) -> tuple[float, float]:

@@ -174,6 +174,16 @@ def test_a_disc_under_foam_is_found_about_as_well_as_on_a_bare_pad() -> None:
     assert (foam < 1.5 * bare + 0.02).all()
 
 
+def test_an_answer_says_that_the_face_is_on_foam() -> None:
+    step, loads = LocateDisc(LocateSettings(gap_cm=0.3)), pressed(4)
+    bare, foam = (
+        step(frame_of(its).image).posterior for its in (loads, carried(loads, by_foam(0.52)))
+    )
+    assert foam.pressures["foam"] > 0.5
+    assert "even" not in foam.pressures
+    assert bare.pressures.get("foam", 0.0) < 0.1
+
+
 def test_foam_that_the_pad_tells_of_is_not_undone(monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(readings: Readings) -> None:
         raise AssertionError("foam is told")
