@@ -27,7 +27,7 @@ from tactile_graph_likelihood.single.element_terms import (
 )
 from tactile_graph_likelihood.single.readings import Readings
 
-FIRST, MOST = 0.45, 0.7
+FIRST, MOST = 0.4, 0.7
 """Widths of foam, in cells, that are looked for; of less a bare pad's readings may be, too."""
 
 WIDER, HALVINGS = 1.2, 4
