@@ -117,12 +117,13 @@ def contrast_of(told: Noise, log_sigma: float, readings: Readings, law: float = 
     turn_on = readings.turn_on
     if turn_on is None and other < 0.0:
         return Contrast(1.0 + LAWLESS * other, math.hypot(SPREADS[CONTRAST], LAWLESS_STD * other))
-    if (edge := edge_of(readings)) is not None:
+    begin = readings.through_foam or readings
+    if (edge := edge_of(begin)) is not None:
         return Contrast(contrast_by(other, edge, readings.touched))
     unseen = 1.0 + law * other
     if turn_on is None or turn_on.chance >= 1.0:
         return Contrast(unseen)
-    if (edge := edge_of(straightened(readings, 1.0))) is None:
+    if (edge := edge_of(straightened(begin, 1.0))) is None:
         return Contrast(unseen)
     straight = contrast_by(other, edge, readings.touched)
     return Contrast(turn_on.chance * unseen + (1.0 - turn_on.chance) * straight)

@@ -346,7 +346,7 @@ class AnyPad:
             its = mixed(weighed, dict.fromkeys(weighed, 1.0))
         elif best != EVEN:
             its = changed(its, pressures={best: 1.0})
-        if readings.without_foam:
+        if readings.through_foam is not None:
             its = changed(its, pressures=on_foam(its.pressures))
         total = sum(shares.values())
         pressed = sum(share * self._wider(part) for part, share in shares.items()) / total

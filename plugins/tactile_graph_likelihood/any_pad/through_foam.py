@@ -151,12 +151,7 @@ def _laid_open(
     logs[part.box] = np.log(np.where(shows, loads, np.maximum(np.where(seen, 0.0, limits), least)))
     states[part.box] = np.where(shows, ON, np.where(part.states == UNKNOWN, UNKNOWN, UNDER))
     states[[0, -1]] = states[:, [0, -1]] = UNKNOWN
-    turn_on = readings.turn_on
-    if turn_on is not None:
-        turn_on = turn_on._replace(hidden=math.inf)  # where these begin says nothing of the law
-    found = readings._replace(
-        logs=logs, least_log=math.log(least), turn_on=turn_on, without_foam=True
-    )
+    found = readings._replace(logs=logs, least_log=math.log(least), through_foam=readings)
     return found.with_states(states)
 
 

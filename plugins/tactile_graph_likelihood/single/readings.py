@@ -58,7 +58,7 @@ class Readings(NamedTuple):
     height of a cell over its width, where it is nearly 1 and was taken for that, cells being as
     large as they are; ``least_log`` the logarithm of the least load that shows, where the readings
     themselves say it; ``turn_on`` what is told of the law there, where readings are by one;
-    ``without_foam`` is whether foam was undone.
+    ``through_foam`` what was read before foam was undone.
     """
 
     grid: Values
@@ -68,7 +68,7 @@ class Readings(NamedTuple):
     stretch: float = 1.0
     least_log: float | None = None
     turn_on: TurnOn | None = None
-    without_foam: bool = False
+    through_foam: Readings | None = None
 
     @property
     def size_cm(self) -> tuple[float, float]:
