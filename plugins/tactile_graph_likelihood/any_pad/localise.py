@@ -46,7 +46,7 @@ from tactile_graph_likelihood.any_pad.second_climbs import (
     around_clump,
     beyond_the_edge,
 )
-from tactile_graph_likelihood.any_pad.through_foam import without_foam
+from tactile_graph_likelihood.any_pad.through_foam import has_no_foam, without_foam
 from tactile_graph_likelihood.any_pad.turn_on import (
     SURE,
     chance_of_a_bend,
@@ -299,6 +299,8 @@ class AnyPad:
             even = beyond_the_edge(its._fit(EVEN), readings, even)
         found = {EVEN: even}
         asked = [] if large else asked_by([even.fit], FIRST, CLEAR if self.quick else self._faint)
+        if FOAM in asked and readings.through_foam is None and has_no_foam(readings):
+            asked.remove(FOAM)
         hidden = bool(asked) and self._reaches_beyond(readings, even)
         for part in asked:
             if hidden and part != FOAM:

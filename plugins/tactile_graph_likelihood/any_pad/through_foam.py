@@ -30,6 +30,9 @@ from tactile_graph_likelihood.single.readings import Readings
 FIRST, MOST = 0.4, 0.7
 """Widths of foam, in cells, that are looked for; of less a bare pad's readings may be, too."""
 
+NARROWEST = 0.3
+"""Width of foam, in cells, that there is none where not even that is possible."""
+
 WIDER, HALVINGS = 1.2, 4
 """Factor from one width that is tried to the next, and halvings of what lies between the last."""
 
@@ -108,12 +111,18 @@ def without_foam(readings: Readings) -> Readings | None:
     return _laid_open(readings, part, loads, limits, FAINT * usual)
 
 
+def has_no_foam(readings: Readings) -> bool:
+    """Return whether readings lie so far below their neighbours that there is no foam."""
+    part = _shown(readings)
+    return part is not None and widest.call(part.loads, part.states, NARROWEST) == 0.0
+
+
 def _undone(part: Part, loads: Values, limits: Values) -> bool:
     """Write loads and limits as `undone` does; return whether it is foam, of a width that is told.
 
     It is if wider foam explains readings clearly worse.
     """
-    width = widest.call(part.loads, part.states)
+    width = widest.call(part.loads, part.states, FIRST)
     if not 0.0 < width < MOST:
         return False
     for _ in range(TRIES):
@@ -156,10 +165,10 @@ def _laid_open(
 
 
 @compiled_as_is
-def widest(loads: Values, states: States) -> float:
+def widest(loads: Values, states: States, first: float) -> float:
     """Return the width of foam, in cells, that leaves loads within what is touched positive.
 
-    0 where that is less than `FIRST`, or nothing lies within.
+    0 where that is less than ``first``, infinite where nothing lies within.
     """
     rows, cols = loads.shape
     counted, n, mean = np.zeros((rows, cols), np.bool_), 0, 0.0
@@ -176,9 +185,9 @@ def widest(loads: Values, states: States) -> float:
                 n += 1
                 mean += loads[i, j]
     if n < FEWEST:
-        return 0.0
+        return math.inf
     allowed = n * (BELOW_ZERO * mean / n) ** 2
-    least, most = 0.0, FIRST
+    least, most = 0.0, first
     while below_zero(loads, states, counted, most) <= allowed:
         least = most
         if least >= MOST:

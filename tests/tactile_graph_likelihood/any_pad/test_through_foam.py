@@ -12,7 +12,12 @@ from tactile_graph import Frame
 from tactile_graph_likelihood.any_pad import localise
 from tactile_graph_likelihood.any_pad.locate import LocateDisc
 from tactile_graph_likelihood.any_pad.spread_loads import shares_of, spread, unspread
-from tactile_graph_likelihood.any_pad.through_foam import widest, without_foam
+from tactile_graph_likelihood.any_pad.through_foam import (
+    FIRST,
+    has_no_foam,
+    widest,
+    without_foam,
+)
 from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single.element_terms import ON, OVER, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
@@ -72,7 +77,7 @@ def test_loads_are_spread_and_found_again(width: float) -> None:
 def test_the_width_is_that_of_the_foam(width: float) -> None:
     for seed in range(10):
         its = readings_of(carried(pressed(seed), by_foam(width)))
-        assert widest.call(np.exp(its.logs), its.states) == pytest.approx(width, rel=0.04)
+        assert widest.call(np.exp(its.logs), its.states, FIRST) == pytest.approx(width, rel=0.04)
 
 
 @pytest.mark.slow
@@ -100,6 +105,13 @@ def test_a_bare_pad_has_no_foam(voids: float) -> None:
     assert sum(its is not None for its in found) <= 3
 
 
+def test_readings_far_below_their_neighbours_leave_no_foam_possible() -> None:
+    bare = [has_no_foam(readings_of(pressed(seed, 0.4))) for seed in range(30)]
+    foam = [has_no_foam(readings_of(carried(pressed(s, 0.4), by_foam(0.4)))) for s in range(30)]
+    assert sum(bare) >= 20
+    assert not any(foam)
+
+
 @pytest.mark.slow
 def test_foam_that_is_too_wide_or_has_tails_is_left_to_the_fit() -> None:
     wide = [without_foam(readings_of(carried(pressed(s), by_foam(1.1)))) for s in range(20)]
@@ -112,7 +124,7 @@ def test_noise_of_a_hundredth_leaves_the_width_as_it_is() -> None:
     for seed in range(10):
         rng, under = np.random.default_rng(seed), carried(pressed(seed), by_foam(0.5))
         its = readings_of(under + 0.5 * rng.standard_normal(under.shape))
-        assert widest.call(np.exp(its.logs), its.states) == pytest.approx(0.5, rel=0.08)
+        assert widest.call(np.exp(its.logs), its.states, FIRST) == pytest.approx(0.5, rel=0.08)
 
 
 def test_it_does_not_matter_how_the_pad_is_held() -> None:
