@@ -131,6 +131,8 @@ class AnyPad:
         The deviation of its centre from which on a quick disc is sampled after all.
     unevened : AnyPad, optional
         Where gains were learned: the same for readings that are not divided by them.
+    foam_cm : float
+        Width of foam that the pad tells of; ``told`` knows of none, since it is undone.
 
     Notes
     -----
@@ -146,11 +148,14 @@ class AnyPad:
     quick: bool = False
     sampled_above_cm: float = math.inf
     unevened: AnyPad | None = None
+    foam_cm: float = 0.0
 
     @classmethod
     def of(cls, settings: LocateSettings, kind: int) -> AnyPad:
         """Return the fits of a kind of outline; a pad that says it is even has not been asked."""
         told, untold = settings.model(kind), Noise()
+        foam_cm = told.noise.foam_cm
+        told = changed(told, noise=changed(told.noise, foam_cm=0.0))
         sigma, voids = told.noise.sigma, told.noise.voids
         if sigma < LEAST_SIGMA:
             sigma, voids = untold.sigma, voids or untold.voids
@@ -159,18 +164,23 @@ class AnyPad:
         noise = changed(told.noise, sigma=sigma, voids=voids)
         above_cm = math.inf if settings.sampled_above_cm is None else settings.sampled_above_cm
         if sigma >= told.noise.sigma:
-            return cls(changed(told, noise=noise), LAW, settings.quick, above_cm)
-        plain = cls(told, LAW, settings.quick, above_cm)
-        return cls(changed(told, noise=noise), 0.0, settings.quick, above_cm, plain)
+            its = changed(told, noise=noise)
+            return cls(its, LAW, settings.quick, above_cm, foam_cm=foam_cm)
+        plain = cls(told, LAW, settings.quick, above_cm, foam_cm=foam_cm)
+        return cls(changed(told, noise=noise), 0.0, settings.quick, above_cm, plain, foam_cm)
 
     @cached_property
-    def _thorough(self) -> AnyPad:
-        return changed(self, quick=False)
+    def _on_large_pads(self) -> AnyPad:
+        noise = changed(self.told.noise, foam_cm=self.foam_cm)
+        return changed(self, told=changed(self.told, noise=noise), quick=False, foam_cm=0.0)
 
     def suited(self, readings: Readings) -> AnyPad:
-        """Return these fits, or on pads of more than 1024 elements those that are not quick."""
+        """Return these fits, or those for pads of more than 1024 elements.
+
+        They are not quick, and know of the foam that is told, since none is undone there.
+        """
         large = readings.states.size > LARGE_PAD
-        return self._thorough if self.quick and large else self
+        return self._on_large_pads if large and (self.quick or self.foam_cm > 0.0) else self
 
     @cached_property
     def _kept(self) -> dict[str, Model]:
@@ -216,9 +226,10 @@ class AnyPad:
             return readings, even
         if (bare := unbent(readings)) is not None:
             readings, even = self._by_law(readings, even, *bare)
-        untold = self.told.noise.foam_cm <= 0.0 and asked_by([even.fit], [FOAM], self._faint)
-        if untold and (its := without_foam(readings)) is not None:
-            readings, even = its, self.near(its, self.told.point_of(even))
+        if self.foam_cm > 0.0 or asked_by([even.fit], [FOAM], self._faint):
+            its = without_foam(readings, self.foam_cm)
+            if its is not None:
+                readings, even = its, self.near(its, self.told.point_of(even))
         p = self.told.point_of(even)
         rim = without_hollow(self.told.kind, readings, p, float(p[-1]))
         return (readings, even) if rim is None else (rim, self.near(rim, p))

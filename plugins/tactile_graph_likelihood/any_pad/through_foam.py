@@ -30,6 +30,10 @@ from tactile_graph_likelihood.single.readings import Readings
 FIRST, MOST = 0.4, 0.7
 """Widths of foam, in cells, that are looked for; of less a bare pad's readings may be, too."""
 
+LEAST_TOLD, MOST_TOLD = 0.2, 0.9
+"""Widths, in cells, of foam that is told: less changes nothing, through more loads that lie side by
+side are not told apart."""
+
 NARROWEST = 0.3
 """Width of foam, in cells, that there is none where not even that is possible."""
 
@@ -91,8 +95,14 @@ class Part(NamedTuple):
         return found
 
 
-def without_foam(readings: Readings) -> Readings | None:
+def without_foam(readings: Readings, told_cm: float = 0.0) -> Readings | None:
     """Return readings as if no foam lay on the pad, None where none is to be seen.
+
+    Parameters
+    ----------
+    readings : Readings
+    told_cm : float
+        Width of foam that is told, 0 for none: that is undone if it explains the readings.
 
     Notes
     -----
@@ -103,10 +113,14 @@ def without_foam(readings: Readings) -> Readings | None:
     if part is None:
         return None
     loads, limits = np.empty(part.loads.shape), np.empty(part.loads.shape)
-    if not _undone(part, loads, limits):
+    told = told_cm / float(readings.grid[2])
+    as_told = LEAST_TOLD <= told <= MOST_TOLD and (
+        undone.call(part.loads, part.states, told, 0.0, loads, limits) < UNEXPLAINED
+    )
+    if not as_told and not _undone(part, loads, limits):
         return None
     usual = float(np.median(loads[part.seen & (loads > 0.0)]))
-    if bare_rim.call(loads, part.states, usual) < BARE:
+    if not as_told and bare_rim.call(loads, part.states, usual) < BARE:
         return None
     return _laid_open(readings, part, loads, limits, FAINT * usual)
 

@@ -95,7 +95,8 @@ class LocateObjects:
             SeveralSettings, Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm")
         ] = SEVERAL,
     ) -> None:
-        self._pad, self._gap_cm, self._told = settings.known_pad, settings.gap_cm, settings.noise
+        self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
+        self._told = settings.noise
         self.expected = settings.expected(kinds, most, more)
 
     def __call__(self, image: NearlySquare) -> Footprints:
@@ -114,8 +115,8 @@ class LocateObjects:
             If nothing rises above the noise, or no such outlines explain what does.
         """
         readings = observed(image, self._pad, self._gap_cm)
-        if readings.states.size <= LARGE_PAD and self._told.foam_cm <= 0.0:
-            readings = without_foam(readings) or readings
+        if readings.states.size <= LARGE_PAD:
+            readings = without_foam(readings, self._told.foam_cm) or readings
         problem, found = self.searched(readings)
         pitch = float(readings.grid[2])
         parts, fit = posteriors(problem, found)
@@ -148,6 +149,8 @@ class LocateObjects:
         """
         pitch = float(readings.grid[2])
         told, least_log = self._told, uniform(readings).least_log
+        if readings.through_foam is not None:
+            told = replace(told, foam_cm=0.0)
         if least_log is not None:
             told = replace(told, least=math.exp(least_log))
         problem = self.expected.problem(readings, told.vector(pitch))
