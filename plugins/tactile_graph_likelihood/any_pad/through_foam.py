@@ -59,9 +59,9 @@ MARGIN = 2
 ROUNDS, ENOUGH = 100, 1e-3
 """Steps towards the loads, and the change, over the largest reading, below which they end."""
 
-UNEXPLAINED, NARROWER, TRIES = 0.015, 0.96, 5
+UNEXPLAINED, NARROWER = 0.01, 0.96
 """Root mean square of what the loads leave of the readings, over theirs, below which they are
-believed; by how much less wide foam is tried otherwise, and how often."""
+believed; by how much less wide foam is tried otherwise."""
 
 DISTINCT, CONTRADICTED, STEEPER = 1.06, 0.003, 1.5
 """Times the width, and what that must leave of the readings at least, also over what the width
@@ -137,9 +137,9 @@ def _undone(part: Part, loads: Values, limits: Values) -> bool:
     It is if wider foam explains readings clearly worse.
     """
     width = widest.call(part.loads, part.states, FIRST)
-    if not 0.0 < width < MOST:
+    if width >= MOST:
         return False
-    for _ in range(TRIES):
+    while width >= FIRST:
         left = undone.call(part.loads, part.states, width, 0.0, loads, limits)
         if left < UNEXPLAINED:
             least, other = max(CONTRADICTED, STEEPER * left), np.empty(loads.shape)
