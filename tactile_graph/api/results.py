@@ -34,12 +34,14 @@ class Results(Iterator[Result]):
         self._results = results
         self._taken = False
         self._broken = ""
+        self._told = False
 
     def __next__(self) -> Result:
         try:
             result = next(self._results)
         except StopIteration:
-            if self._broken:
+            if self._broken and not self._told:
+                self._told = True  # once: who goes on after any error would never come to the end
                 raise UsageError(
                     f"the stream ended with {self._broken}, and has no further frames; "
                     "pipeline.stream() makes a new one"
@@ -48,7 +50,7 @@ class Results(Iterator[Result]):
         except BaseException as error:  # whatever raised is over: it would seem to have ended well
             self._broken = type(error).__name__
             raise
-        self._taken = True
+        self._taken, self._broken = True, ""
         return result
 
     def to_pandas(self, *, long: bool = False) -> pd.DataFrame:
@@ -79,7 +81,7 @@ class Results(Iterator[Result]):
         table = make_table(self._pipeline, self._asked, long)
         rows: list[dict[str, Any]] = []
         quantities: set[str] = set()
-        taken_before = self._taken
+        taken_before, self._told = self._taken, False
         for result in self:
             quantities.add(result.frame.image.quantity)
             rows += table.rows(result)

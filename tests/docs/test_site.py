@@ -115,3 +115,20 @@ def test_drawings_are_moved_along_not_made_too_small_to_read(width_px: int) -> N
             assert 0.9 < tab.evaluate(scale) < 2, name
             assert tab.evaluate("document.documentElement.scrollWidth") <= width_px, name
         browser.close()
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="there is no chromium")
+@pytest.mark.parametrize("width_px", [360, 1400])
+def test_the_first_picture_is_seen_whole_where_there_is_room(width_px: int) -> None:
+    play = pytest.importorskip("playwright.sync_api")
+    picture = "document.querySelector('main figure.wide img')"
+    with play.sync_playwright() as played:
+        browser = played.chromium.launch(
+            executable_path=shutil.which("chromium"), args=["--no-sandbox", "--disable-gpu"]
+        )
+        tab = browser.new_page(viewport={"width": width_px, "height": 900})
+        tab.goto((SITE / "index.html").resolve().as_uri())
+        assert tab.evaluate(f"{picture}.width") > 1000
+        moved_px = tab.evaluate(f"(f => f.scrollWidth - f.clientWidth)({picture}.parentElement)")
+        assert (moved_px == 0) is (width_px == 1400)
+        browser.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -183,7 +184,7 @@ def _check_csv(name: str) -> None:
     if path.suffix.lower() != ".csv":
         if path.exists():
             raise UsageError(f"--csv {name}: is a file; its name must end in .csv")
-        if path.suffix[1:2].isalpha() and not name.endswith("/"):
+        if path.suffix[1:2].isalpha() and os.path.basename(name):
             raise UsageError(
                 f"--csv {name}: must be a file whose name ends in .csv, or a folder; to make a "
                 f"folder of that name, write {name}/"

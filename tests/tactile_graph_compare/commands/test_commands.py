@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import csv
 import json
+import ntpath
 import os
+import posixpath
 import re
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -14,6 +17,8 @@ from helpers_cli import call, install
 from helpers_compare import COMPARE
 from tactile_graph import Image
 from tactile_graph.cli.endings import PIPE_CLOSED
+from tactile_graph.errors import UsageError
+from tactile_graph_compare.commands.compare import _check_csv
 
 TWO = ("compare", "discs", "next.yaml", "--frames", "10")
 
@@ -263,3 +268,14 @@ def test_an_audit_that_cannot_be_made_is_told_why(hand_made, args, message):
     got = call("audit", *args)
     assert got.exit_code == 2
     assert re.search(message, got.stderr), got.stderr
+
+
+@pytest.mark.parametrize(("name", "parted"), [("new.x/", posixpath), ("new.x\\", ntpath)])
+def test_a_new_folder_of_any_name_ends_in_the_systems_slash(
+    name: str, parted: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("os.path.basename", parted.basename)
+    _check_csv(name)
+    with pytest.raises(UsageError, match=r"to make a folder of that name, write new\.x/"):
+        _check_csv(name[:-1])

@@ -11,6 +11,8 @@ import pytest
 
 from helpers_graphs import frame, registry
 from tactile_graph import Circle, Degenerate, Frame, Image, load, loads
+from tactile_graph.api.result import Result
+from tactile_graph.api.results import Results
 from tactile_graph.engine.tables.table import ObjectTable, make_table, units_of
 from tactile_graph.errors import UsageError
 from tactile_graph.vocabulary import words_and_unit
@@ -197,6 +199,43 @@ def test_a_stream_whose_frames_were_taken_says_so() -> None:
         list(stream)
     with pytest.raises(UsageError, match="the stream ended with KeyboardInterrupt"):
         stream.to_pandas()
+
+
+def test_whoever_goes_on_after_errors_comes_to_the_end() -> None:
+    pipeline = loads(NODES, "p.yaml", registry({"found": found, "smaller": smaller}))
+    stream = pipeline.stream([frame(1), "no frame", frame(2)])  # type: ignore[list-item]
+    told: list[str] = []
+    for _ in range(9):
+        try:
+            next(stream)
+        except StopIteration:
+            break
+        except UsageError as error:
+            told.append(str(error))
+    assert [text.partition(",")[0] for text in told] == [
+        "a frame is needed",
+        "the stream ended with UsageError",
+    ]
+
+
+def test_an_interrupt_between_two_frames_ends_no_stream() -> None:
+    pipeline = loads(NODES, "p.yaml", registry({"found": found, "smaller": smaller}))
+    results = iter(pipeline.stream([frame(1), frame(2)]))
+
+    class Interrupted(Iterator[Result]):
+        n = 0
+
+        def __next__(self) -> Result:
+            self.n += 1
+            if self.n == 2:
+                raise KeyboardInterrupt
+            return next(results)
+
+    stream = Results(pipeline, ("found",), Interrupted())
+    next(stream)
+    with pytest.raises(KeyboardInterrupt):
+        next(stream)
+    assert len(list(stream)) == 1
 
 
 def test_without_pandas_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
