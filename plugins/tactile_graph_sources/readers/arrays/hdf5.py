@@ -119,10 +119,17 @@ class _Cells:
 
 
 def _referred(h5py: ModuleType, dataset: Any) -> list[Any]:
-    """Return what a dataset of references refers to; none where one leads nowhere."""
+    """Return what a dataset of references refers to; none where one leads to no cell of MATLAB's.
+
+    Others refer to what stands under a name of its own, and is found by that.
+    """
     file, found = dataset.file, []
-    for reference in np.ravel(dataset[()]) if dataset.size <= MOST_CELLS else ():
+    few = dataset.shape is not None and dataset.size <= MOST_CELLS
+    for reference in np.ravel(dataset[()]) if few else ():
         if not (isinstance(reference, h5py.Reference) and reference):
+            return []
+        name = h5py.h5r.get_name(reference, file.id)
+        if not (name or b"").startswith(b"/" + _ITEMS.encode()):
             return []
         found.append(file[reference])
     return found
@@ -135,13 +142,16 @@ def _texts(h5py: ModuleType, dataset: Any) -> list[str]:
     values = dataset[()]
     if _class_of(dataset) == "char":
         return ["".join(map(chr, row)) for row in np.atleast_2d(values.T)]
-    return [v.decode("utf-8", "replace") if isinstance(v, bytes) else str(v) for v in values.flat]
+    texts = np.ravel(values).tolist()
+    return [v.decode("utf-8", "replace") if isinstance(v, bytes) else str(v) for v in texts]
 
 
 def _in_cells(h5py: ModuleType, dataset: Any) -> _Cells | Unread:
     """Return what a dataset of references refers to, or why that is not read."""
     name = dataset.name.rpartition("/")[2]
     items = _referred(h5py, dataset)
+    if _ITEMS.strip("/") not in dataset.file:
+        return Unread("references", "", dataset.shape)
     if items and all(isinstance(d, h5py.Dataset) and d.shape is not None for d in items):
         why = [_why_unread(h5py, d) for d in items]
         if all(w is not None and w.what == TEXT for w in why):

@@ -210,3 +210,35 @@ def test_texts_in_a_cell_array_of_matlab_are_times(tmp_path: Path) -> None:
         file["time"] = refs
     frames, _ = frames_of(path)
     assert [f.time_s for f in frames] == [1.0 * k for k in range(12)]
+
+
+def refer_to_each(file: Any) -> None:
+    """Write matrices that are numbered, and references to them in their order."""
+    names = [f"frame_{k:02d}" for k in range(12)]
+    for name, values in zip(names, OBLONG, strict=True):
+        file[name] = values
+    file["order"] = np.array([file[name].ref for name in names], dtype=h5py.ref_dtype)
+
+
+def refer_nowhere(file: Any) -> None:
+    with_stack(file)
+    file["gone"] = np.arange(3.0)
+    file["link"] = np.array([file["gone"].ref], dtype=h5py.ref_dtype)
+    del file["gone"]
+
+
+def refer_empty(file: Any) -> None:
+    with_stack(file)
+    file["link"] = h5py.Empty(h5py.ref_dtype)
+
+
+def refer_to_a_text(file: Any) -> None:
+    with_stack(file)
+    file["#refs#/a"] = "noon"
+    file["time"] = np.array([file["#refs#/a"].ref] * 12, dtype=h5py.ref_dtype)
+
+
+@pytest.mark.parametrize("fill", [refer_to_each, refer_nowhere, refer_empty, refer_to_a_text])
+def test_references_of_other_programs_do_no_harm_beside_frames(fill: Fill, tmp_path: Path) -> None:
+    frames, _ = frames_of(made(tmp_path / "a.h5", fill))
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
