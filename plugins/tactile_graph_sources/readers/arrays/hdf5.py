@@ -119,19 +119,19 @@ class _Cells:
 
 
 def _referred(h5py: ModuleType, dataset: Any) -> list[Any]:
-    """Return what a dataset of references refers to; none where one leads to no cell of MATLAB's.
+    """Return what a dataset of references refers to; none where one leads nowhere.
 
-    Others refer to what stands under a name of its own, and is found by that.
+    Nor in files without cells of MATLAB's: what others refer to is found by its own name.
     """
     file, found = dataset.file, []
-    few = dataset.shape is not None and dataset.size <= MOST_CELLS
-    for reference in np.ravel(dataset[()]) if few else ():
+    of_matlab = _ITEMS.strip("/") in file and dataset.shape is not None
+    for reference in np.ravel(dataset[()]) if of_matlab and dataset.size <= MOST_CELLS else ():
         if not (isinstance(reference, h5py.Reference) and reference):
             return []
-        name = h5py.h5r.get_name(reference, file.id)
-        if not (name or b"").startswith(b"/" + _ITEMS.encode()):
+        try:
+            found.append(file[reference])
+        except (KeyError, RuntimeError, ValueError):
             return []
-        found.append(file[reference])
     return found
 
 
@@ -157,6 +157,7 @@ def _in_cells(h5py: ModuleType, dataset: Any) -> _Cells | Unread:
         if all(w is not None and w.what == TEXT for w in why):
             return Unread(TEXT, "", dataset.shape)
         numbers = all(w is None and d.dtype.kind in "buif" for w, d in zip(why, items, strict=True))
+        numbers = numbers and not any("MATLAB_empty" in d.attrs for d in items)  # their sizes
         if numbers and len({d.shape for d in items}) == 1:
             return _Cells(items)
     told = f"in MATLAB, make it a stack: {name} = cat(3, {name}{{:}})"

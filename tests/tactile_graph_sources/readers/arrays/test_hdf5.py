@@ -212,6 +212,20 @@ def test_texts_in_a_cell_array_of_matlab_are_times(tmp_path: Path) -> None:
     assert [f.time_s for f in frames] == [1.0 * k for k in range(12)]
 
 
+def test_cells_that_are_empty_are_no_matrix_and_a_text_in_one_is_a_unit(tmp_path: Path) -> None:
+    path = matlab_73(tmp_path / "a.mat", [np.zeros((1, 2))] * 2, p=OBLONG, t=np.arange(12.0)[None])
+    with h5py.File(path, "a") as file:
+        for name in ("a", "b"):
+            file[f"#refs#/{name}"].attrs["MATLAB_empty"] = np.uint8(1)
+        letters = np.array([[ord(c)] for c in "kPa"], np.uint16)
+        file["#refs#/c"] = letters
+        file["#refs#/c"].attrs["MATLAB_class"] = np.bytes_("char")
+        file["unit"] = np.array([[file["#refs#/c"].ref]], dtype=h5py.ref_dtype)
+    frames, _ = frames_of(path)
+    np.testing.assert_array_equal([f.image.values.T for f in frames], OBLONG)
+    assert frames[0].image.quantity == "kilopascal"
+
+
 def refer_to_each(file: Any) -> None:
     """Write matrices that are numbered, and references to them in their order."""
     names = [f"frame_{k:02d}" for k in range(12)]
