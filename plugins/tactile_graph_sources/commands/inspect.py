@@ -203,11 +203,23 @@ def _levelled(looked: Looked, works: _Works, settings: Sequence[str]) -> str:
     if not name or looked.n_frames < 2:
         return ""
     path = str(looked.path)
-    source = ", ".join([f"path: {json.dumps(path)}", *(s.replace("=", ": ", 1) for s in settings)])
+    source = ", ".join([f"path: {json.dumps(path)}", *map(_in_yaml, settings)])
     value = path if not settings and is_plain(path) else f"{{{source}}}"
     told = "".join(f" --with {pasted(s)}" for s in settings)
     setting = pasted(f"{works.levels[name]}.noise_of={value}")
     return f"tactile-graph run {name} {pasted_path(path)}{told} --set {setting}"
+
+
+def _in_yaml(setting: str) -> str:
+    """Return a setting as it may stand among others in YAML, in quotes where it is none."""
+    from tactile_graph.cli.arguments import source_settings_of
+    from tactile_graph.pipeline.document import read_document
+
+    name, _, typed = setting.partition("=")
+    document = read_document(f"{{{name}: {typed}}}", "")
+    given = source_settings_of("recording", [setting])
+    fits = not document.problems and document.data == given
+    return f"{name}: {typed if fits else json.dumps(given[name.strip()])}"
 
 
 def _works(frames: Sequence[Frame]) -> _Works:

@@ -293,6 +293,7 @@ def test_mistakes_of_the_command_line_are_told_before_the_work(tmp_path: Path) -
     assert "is given as empty and as a recording of objects" in refused("-e", empty, empty)
     assert "unknown setting 'pich_cm'; did you" in refused("-e", empty, "--with", "pich_cm=1")
     assert "are named on the command line" in refused("-e", empty, "--with", "path=a.npy")
+    assert "unknown quantity '@x'" in refused("-e", empty, "--with", "quantity=@x")
     (tmp_path / "p.csv").write_text("recording,x_cm,y_cm\nobject.npz,1,2\n")
     said = refused("-e", empty, objects, "--places", tmp_path / "p.csv")
     assert "did you mean 'objects.npz'" in said

@@ -186,6 +186,23 @@ def test_names_that_are_no_yaml_are_inspected_and_the_commands_take_them(
     assert Path(as_the_shell_has_them(convert)[2]) == Path(name)
 
 
+@pytest.mark.slow
+@pytest.mark.usefixtures("nothing_tried")
+def test_a_setting_that_is_no_yaml_is_quoted_where_it_stands_in_yaml(tmp_path: Path) -> None:
+    lines = ["time," + ",".join(f"p{k}" for k in range(30))]
+    lines += [
+        f"3/1/24 12:00:{k:02d}," + ",".join(f"{v:.0f}" for v in frame.ravel())
+        for k, frame in enumerate(film(30, 5, 6))
+    ]
+    (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
+    given = {"rows": 5, "columns": 6, "time_format": "%m/%d/%y %H:%M:%S"}
+    typed = [f"--with={name}={value}" for name, value in given.items()]
+    levelled = next(c for c in looked(tmp_path / "a.csv", *typed)["commands"] if " --set " in c)
+    said = as_the_shell_has_them(levelled)[-1].partition("noise_of=")[2]
+    values = {name: str(value) for name, value in yaml.safe_load(said).items()}
+    assert values == {"path": str(tmp_path / "a.csv"), **{k: str(v) for k, v in given.items()}}
+
+
 def as_the_shell_has_them(command: str) -> list[str]:
     """Return the words of a command line, as bash hands them over."""
     told = ["bash", "-c", f"printf '%s\\0' {command}"]

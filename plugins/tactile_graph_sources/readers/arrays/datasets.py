@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph_sources.readers.arrays.stack import MOST_CHANNELS, stack_of
-from tactile_graph_sources.readers.arrays.times import in_seconds
+from tactile_graph_sources.readers.arrays.times import TEXTS, in_seconds
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
@@ -132,6 +132,9 @@ def _refuse_lone_matrix(reading: Reading, held: Held) -> None:
     if reading.told.shape or held.times is None or held.values.ndim != 2:
         return
     n, n_cells = held.values.shape
+    labels = held.times.dtype.kind in TEXTS
+    if labels and in_seconds(reading, held.times_name, held.times) is None:
+        return  # words that name its rows
     if 1 < n == len(held.times):
         raise DataError(
             str(reading.path),

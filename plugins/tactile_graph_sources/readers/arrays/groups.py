@@ -98,11 +98,17 @@ def _values_beside(group: Group) -> Iterator[tuple[str, Any]]:
             array = found[name] if name in found else group.root[name]
             group.check({name: array})
             value: Any = array[()] if array.size <= LONGEST_TEXT else None
+            if name in texts and not _is_text(value):
+                value = group.texts(name)  # in cells of MATLAB's
         except Exception:  # of a type that the library does not know, or far too large
             continue
         if name in texts and np.ndim(value) and np.asarray(value).dtype.kind == "u":  # of MATLAB
             value = "".join(map(chr, np.ravel(value)))
         yield bare(name), value
+
+
+def _is_text(value: Any) -> bool:
+    return value is None or all(isinstance(v, str | bytes | int) for v in np.ravel(value).tolist())
 
 
 def _with_unit(name: str, unit: object) -> str:

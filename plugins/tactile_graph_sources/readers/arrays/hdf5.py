@@ -119,12 +119,19 @@ class _Cells:
 
 
 def _referred(h5py: ModuleType, dataset: Any) -> list[Any]:
-    """Return what a dataset of references refers to; none where one leads nowhere."""
+    """Return what a dataset of references refers to; none where one leads nowhere.
+
+    Nor in files without cells of MATLAB's: what others refer to is found by its own name.
+    """
     file, found = dataset.file, []
-    for reference in np.ravel(dataset[()]) if dataset.size <= MOST_CELLS else ():
+    of_matlab = _ITEMS.strip("/") in file and dataset.shape is not None
+    for reference in np.ravel(dataset[()]) if of_matlab and dataset.size <= MOST_CELLS else ():
         if not (isinstance(reference, h5py.Reference) and reference):
             return []
-        found.append(file[reference])
+        try:
+            found.append(file[reference])
+        except (KeyError, RuntimeError, ValueError):
+            return []
     return found
 
 
@@ -135,18 +142,22 @@ def _texts(h5py: ModuleType, dataset: Any) -> list[str]:
     values = dataset[()]
     if _class_of(dataset) == "char":
         return ["".join(map(chr, row)) for row in np.atleast_2d(values.T)]
-    return [v.decode("utf-8", "replace") if isinstance(v, bytes) else str(v) for v in values.flat]
+    texts = np.ravel(values).tolist()
+    return [v.decode("utf-8", "replace") if isinstance(v, bytes) else str(v) for v in texts]
 
 
 def _in_cells(h5py: ModuleType, dataset: Any) -> _Cells | Unread:
     """Return what a dataset of references refers to, or why that is not read."""
     name = dataset.name.rpartition("/")[2]
     items = _referred(h5py, dataset)
+    if _ITEMS.strip("/") not in dataset.file:
+        return Unread("references", "", dataset.shape)
     if items and all(isinstance(d, h5py.Dataset) and d.shape is not None for d in items):
         why = [_why_unread(h5py, d) for d in items]
         if all(w is not None and w.what == TEXT for w in why):
             return Unread(TEXT, "", dataset.shape)
         numbers = all(w is None and d.dtype.kind in "buif" for w, d in zip(why, items, strict=True))
+        numbers = numbers and not any("MATLAB_empty" in d.attrs for d in items)  # their sizes
         if numbers and len({d.shape for d in items}) == 1:
             return _Cells(items)
     told = f"in MATLAB, make it a stack: {name} = cat(3, {name}{{:}})"

@@ -79,12 +79,12 @@ def packing_of(where: str, name: str, dtype: np.dtype[Any], said: Mapping[str, A
 
 def _number(where: str, name: str, said: Mapping[str, Any], key: str) -> float | None:
     """Return a number that an attribute says; None without that attribute."""
-    if key not in said:
+    value = said.get(key)
+    if value is None:
         return None
-    value = said[key]
     try:
-        number = float(np.ravel(value)[0])
-    except (ValueError, TypeError, IndexError):
+        number = float(np.ravel(value).item())
+    except (ValueError, TypeError):
         number = np.nan
     if not np.isfinite(number) or (key == _SCALE and number == 0.0):
         told = f"{key} of {name!r} is {str(value)[:30]!r}; write a number, or take it away"

@@ -112,7 +112,8 @@ def _held(reading: Reading, zarr: Any) -> Held:
     def texts(name: str) -> list[str]:
         if others[name].what != TEXT or whole is None:
             return []
-        return [str(text) for text in np.ravel(whole[name][()])]
+        found = np.ravel(whole[name][()]).tolist()
+        return [t.decode("utf-8", "replace") if isinstance(t, bytes) else str(t) for t in found]
 
     group = Group("array", arrays, others, whole, check, _loaded, texts, _packing)
     return held_in(reading, group)

@@ -69,7 +69,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     block: _Block | None = None
     for number, line in lines:
         text = line.strip()
-        start = _FRAME.match(text) and _FRAME.match(header.dialect.pointed(text))
+        start = _start(header.dialect, text)
         if start or text.startswith("@@"):
             yield from _flush(reading, header, block)
             block = _open(header, number, start) if start else None
@@ -130,6 +130,13 @@ def _open(header: _Header, line: int, start: re.Match[str]) -> _Block:
     if time_s is None and header.seconds_per_frame is not None:
         time_s = (number - 1) * header.seconds_per_frame
     return _Block(line, number, start.string, time_s)
+
+
+def _start(dialect: Dialect, text: str) -> re.Match[str] | None:
+    """Return number and time of a frame that a line opens; what follows the number parts them."""
+    start = _FRAME.match(text)
+    behind = start.end(1) + 1 if start else 0
+    return start and _FRAME.match(text[:behind] + dialect.pointed(text[behind:]))
 
 
 def _flush(reading: Reading, header: _Header, block: _Block | None) -> Iterator[Frame]:

@@ -47,6 +47,8 @@ def read(reading: Reading) -> Iterator[Frame]:
     if asked and not fit:
         near = did_you_mean(asked, topics)
         raise DataError(where, f"no readable topic {asked!r}, there are {listed}{near}")
+    if not asked:
+        fit = _without_unread(reading, fit)
     if len(fit) != 1:
         told = f"several topics could be it ({one_of(fit)}); name one with sensor"
         if fit:
@@ -121,6 +123,17 @@ class _Topic:
             time_name=found.time_name or "time_s",
             gaps=gaps if len(found.values) == len(values) else frozenset(),
         )
+
+
+def _without_unread(reading: Reading, topics: dict[str, _Topic]) -> dict[str, _Topic]:
+    """Return topics without those, such as of coloured images, that give no frame; it is told."""
+    unread = [name for name, topic in topics.items() if topic.is_empty]
+    if len(unread) == len(topics):
+        return topics
+    for name in unread:
+        why = topics[name].damage[0][1]
+        reading.assume(f"topic {name} left out, as no message of it can be read: {why}")
+    return {name: topic for name, topic in topics.items() if name not in unread}
 
 
 def _topics(reading: Reading) -> dict[str, _Topic]:

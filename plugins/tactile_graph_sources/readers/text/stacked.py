@@ -108,7 +108,10 @@ def _is_between(layout: Layout, line: str) -> bool:
     """Return whether a line stands between matrices and says something of the next one."""
     if FRAME_LINE.fullmatch(line) or (layout.header_line and line == layout.header_line):
         return True
-    return bool(layout.breaks) and signature(layout.dialect.pointed(line)) in layout.breaks
+    first = signature(line[: len(line) - len(line.lstrip()) + 1])
+    if not any(b.startswith(first) for b in layout.breaks):  # as most rows of numbers
+        return False
+    return signature(layout.dialect.pointed(line)) in layout.breaks
 
 
 def _joined(one: Stamp, other: Stamp) -> Stamp:

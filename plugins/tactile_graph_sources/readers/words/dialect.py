@@ -206,8 +206,10 @@ class Dialect(NamedTuple):
 
         A comma is a decimal one where it parts no fields and no thousands.
         """
+        if "," not in line or self.thousands == ",":
+            return line
         commas = self.decimal_comma or self.separator != ","
-        return _COMMA_WITHIN.sub(".", line) if commas and self.thousands != "," else line
+        return _COMMA_WITHIN.sub(".", line) if commas else line
 
     def row(self, line: str, width: int) -> list[float]:
         """Return the ``width`` numbers of a line; NaN for missing cells.

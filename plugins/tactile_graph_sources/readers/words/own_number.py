@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from tactile_graph_sources.readers.words.dialect import floats
 
 EXACT = 2**53
@@ -19,7 +21,7 @@ def counted(number: float | None) -> int | None:
 def number_in(text: str) -> float:
     """Return a frame's number, exactly where it is a whole one; raises what `floats` raises."""
     number = floats([text])[0]
-    if abs(number) < EXACT:
+    if abs(number) < EXACT or math.isinf(number):
         return number
     try:
         return int(text)

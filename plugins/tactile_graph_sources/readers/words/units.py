@@ -68,7 +68,7 @@ def pressure_unit(text: str) -> tuple[str, float]:
     (str, float)
         ``("kilopascal", factor)`` for pressures, ``("raw", 1.0)`` for anything else.
     """
-    name = _SQUARED.sub("2", text.strip().strip('"').lower()).replace(" ", "")
+    name = _SQUARED.sub("2", text.strip().strip('"').lower().replace(" ", ""))
     name = name.removesuffix("s") if name not in _KILOPASCAL else name
     factor = _KILOPASCAL.get(name)
     return ("raw", 1.0) if factor is None else ("kilopascal", factor)

@@ -210,3 +210,49 @@ def test_texts_in_a_cell_array_of_matlab_are_times(tmp_path: Path) -> None:
         file["time"] = refs
     frames, _ = frames_of(path)
     assert [f.time_s for f in frames] == [1.0 * k for k in range(12)]
+
+
+def test_cells_that_are_empty_are_no_matrix_and_a_text_in_one_is_a_unit(tmp_path: Path) -> None:
+    path = matlab_73(tmp_path / "a.mat", [np.zeros((1, 2))] * 2, p=OBLONG, t=np.arange(12.0)[None])
+    with h5py.File(path, "a") as file:
+        for name in ("a", "b"):
+            file[f"#refs#/{name}"].attrs["MATLAB_empty"] = np.uint8(1)
+        letters = np.array([[ord(c)] for c in "kPa"], np.uint16)
+        file["#refs#/c"] = letters
+        file["#refs#/c"].attrs["MATLAB_class"] = np.bytes_("char")
+        file["unit"] = np.array([[file["#refs#/c"].ref]], dtype=h5py.ref_dtype)
+    frames, _ = frames_of(path)
+    np.testing.assert_array_equal([f.image.values.T for f in frames], OBLONG)
+    assert frames[0].image.quantity == "kilopascal"
+
+
+def refer_to_each(file: Any) -> None:
+    """Write matrices that are numbered, and references to them in their order."""
+    names = [f"frame_{k:02d}" for k in range(12)]
+    for name, values in zip(names, OBLONG, strict=True):
+        file[name] = values
+    file["order"] = np.array([file[name].ref for name in names], dtype=h5py.ref_dtype)
+
+
+def refer_nowhere(file: Any) -> None:
+    with_stack(file)
+    file["gone"] = np.arange(3.0)
+    file["link"] = np.array([file["gone"].ref], dtype=h5py.ref_dtype)
+    del file["gone"]
+
+
+def refer_empty(file: Any) -> None:
+    with_stack(file)
+    file["link"] = h5py.Empty(h5py.ref_dtype)
+
+
+def refer_to_a_text(file: Any) -> None:
+    with_stack(file)
+    file["#refs#/a"] = "noon"
+    file["time"] = np.array([file["#refs#/a"].ref] * 12, dtype=h5py.ref_dtype)
+
+
+@pytest.mark.parametrize("fill", [refer_to_each, refer_nowhere, refer_empty, refer_to_a_text])
+def test_references_of_other_programs_do_no_harm_beside_frames(fill: Fill, tmp_path: Path) -> None:
+    frames, _ = frames_of(made(tmp_path / "a.h5", fill))
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)

@@ -65,7 +65,7 @@ def test_values_packed_in_zarr_are_unpacked_piece_by_piece(
     check(frames_of(zarr_2(tmp_path, fill, **ABOUT, **more))[0])
 
 
-@pytest.mark.parametrize("scale", ["two", 0.0, np.nan])
+@pytest.mark.parametrize("scale", ["two", 0.0, np.nan, [0.1, 0.2]])
 def test_a_scale_that_is_none_is_refused(scale: object, tmp_path: Path) -> None:
     with pytest.raises(DataError, match=r"scale_factor of 'p' is .*; write a number, or take it"):
         frames_of(hdf5(tmp_path, scale_factor=scale))
@@ -77,3 +77,4 @@ def test_numbers_of_an_unsigned_type_are_read_as_such() -> None:
     values = packing.unpacked(np.array([1, -2, -1], np.int8))
     np.testing.assert_array_equal(values, [1.0, 254.0, np.nan])
     assert packing_of("a.nc", "p", np.dtype("f4"), {}) == Packing()
+    assert packing_of("a.zarr", "p", np.dtype("i2"), {"scale_factor": None}) == Packing()

@@ -171,3 +171,10 @@ def test_texts_of_hdf5_and_zarr_are_times(tmp_path: Path) -> None:
     group.create_array("time", data=np.array(STAMPS))
     for name in ("a.h5", "a.zarr"):
         assert times_of(tmp_path / name)[0] == pytest.approx([0.1 * k for k in range(N)])
+
+
+def test_words_beside_a_matrix_name_its_rows_and_are_no_times(tmp_path: Path) -> None:
+    path = write(tmp_path, npz_bytes(p=OBLONG[0], time=np.array(["rest", *"abcde"])))
+    frames, report = frames_of(path)
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG[:1])
+    assert any("times left out, as of 'time' 'rest' is no time" in told for told in report.counts)

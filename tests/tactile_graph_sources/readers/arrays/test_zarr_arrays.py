@@ -160,3 +160,9 @@ def test_without_the_library_it_says_what_to_install(
         UsageError, match=r"need the 'zarr' extra: pip install \"tactile-graph\[zarr"
     ):
         frames_of(path)
+
+
+def test_times_in_bytes_are_read_as_texts(tmp_path: Path) -> None:
+    stamps = np.array([f"12:00:{k:02d}" for k in range(12)], "S8")
+    frames, _ = frames_of(group(tmp_path / "a.zarr", 2, p=OBLONG, time=stamps))
+    assert [f.time_s for f in frames] == [1.0 * k for k in range(12)]

@@ -108,6 +108,13 @@ def test_tekscan_cells_are_parted_by_commas_tabs_or_blanks(
     assert [f.time_s for f in frames] == pytest.approx([0.1, 0.2, 0.3, 0.4, 0.5])
 
 
+def test_a_whole_second_behind_a_tekscan_frame_is_no_decimal_of_its_number(tmp_path: Path) -> None:
+    lines = tekscan_text(blobs(3, 8, 6), "kPa").splitlines()
+    lines = [f"{t},{t.split()[1]}" if t.startswith("Frame") else t.replace(",", ";") for t in lines]
+    frames, _ = frames_of(write(tmp_path, "\n".join(lines)))
+    assert [(f.own_number, f.time_s) for f in frames] == [(1, 1.0), (2, 2.0), (3, 3.0)]
+
+
 @REAL
 def test_tekscan_film_in_kilopascal_masks_cells_outside_the_insole(
     real: bool, tmp_path: Path

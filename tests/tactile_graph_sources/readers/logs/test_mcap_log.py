@@ -166,6 +166,17 @@ def test_several_topics_are_asked_about_and_those_of_other_kinds_named(tmp_path:
         frames_of(other)
 
 
+def test_a_topic_of_which_nothing_can_be_read_is_no_second_one(tmp_path: Path) -> None:
+    coloured = in_ros_1(OBLONG[0], "sensor_msgs/Image").replace(b"mono16", b"yuv422")
+    camera = ("ros1", "sensor_msgs/Image", [coloured])
+    path = log(tmp_path / "a.mcap", pad=("json", "Pad", in_json(OBLONG)), camera=camera)
+    frames, report = frames_of(path)
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+    assert any("topic /camera left out, as no message of it" in told for told in report.counts)
+    with pytest.raises(DataError, match="no message of topic /camera can be read"):
+        frames_of(path, sensor="camera")
+
+
 def test_a_damaged_message_is_left_out_and_counted(tmp_path: Path) -> None:
     messages = [image(f, "mono16", "u2") for f in OBLONG]
     messages[2] = messages[2][:40]

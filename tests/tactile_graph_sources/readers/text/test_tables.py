@@ -510,6 +510,16 @@ def test_frame_numbers_beyond_those_of_a_float_are_told_apart(tmp_path: Path) ->
     ]
 
 
+def test_a_number_too_large_for_any_frame_is_damage(tmp_path: Path) -> None:
+    values = blobs(2100, 3, 3, decimals=0)
+    lines = ["frame," + ",".join(f"r{i // 3}c{i % 3}" for i in range(9))]
+    lines += [f"{k}," + ",".join(f"{v:.0f}" for v in f.ravel()) for k, f in enumerate(values)]
+    lines[2051] = "9" * 400 + lines[2051].removeprefix("2050")
+    frames, report = frames_of(write(tmp_path, "\n".join(lines)))
+    assert len(frames) == 2099
+    assert [where for where, _ in report.troubles] == [f"{tmp_path / 'recording.dat'}:2052"]
+
+
 def test_a_damaged_stamp_of_a_counter_moves_no_later_time(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     stamps = [4_100_000_000 + 20_000 * k for k in range(12)]

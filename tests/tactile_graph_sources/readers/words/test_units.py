@@ -35,6 +35,7 @@ def test_units_that_are_no_pressure_are_raw(text: str) -> None:
     [
         ("kPa", 1.0),
         ("N/cm²", 10.0),
+        ("N / cm^ 2", 10.0),
         (r"N/cm\xb2", 10.0),
         ("PSI", 6.894757293),
         ("lbf/in2", 6.894757293),
