@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import sys
 from pathlib import Path
 from typing import NamedTuple
@@ -340,10 +341,10 @@ def test_a_write_that_fails_leaves_the_old_file_alone(
     path = tmp_path / "strip.png"
     path.write_text("old")
 
-    def full(self: Path, target: Path) -> Path:
+    def full(part: Path, target: Path) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "replace", full)
+    monkeypatch.setattr(os, "replace", full)
     with pytest.raises(UsageError, match="cannot be written: No space left on device"):
         save_strip(results[:1], path, ["circle"])
     assert path.read_text() == "old"
