@@ -31,7 +31,8 @@ def evenly(corners: Values, step: float) -> tuple[Values, float]:
     """Return points spread over a polygon's sides about ``step`` apart, and the outline's length.
 
     Each side has its own, evenly around its middle: where the walk begins and which way it goes
-    makes no difference.
+    makes no difference. So do sides in a row that are too short for one each, taken together; all
+    sides have one where all are.
     """
     count = corners.shape[0]
     sizes, parts = np.empty(count), np.empty(count, np.int64)
@@ -41,20 +42,38 @@ def evenly(corners: Values, step: float) -> tuple[Values, float]:
         sizes[k] = math.hypot(corners[m, 0] - corners[k, 0], corners[m, 1] - corners[k, 1])
         length += sizes[k]
     step = min(step, length / FEWEST_POINTS)
-    n = 0
+    begin, n = -1, 0
     for k in range(count):
-        parts[k] = max(math.floor(sizes[k] / step + ROUNDED), 1)
+        parts[k] = math.floor(sizes[k] / step + ROUNDED) if sizes[k] > 0.0 else 0
         n += parts[k]
-    xy = np.empty((n, 2))
-    i = 0
-    for k in range(count):
-        m = (k + 1) % count
-        for part in range(parts[k]):
-            share = (part + 0.5) / parts[k]
+        if parts[k] > 0:
+            begin = k
+    xy = np.empty((n + count, 2))
+    i = done = 0
+    while done < count:
+        first, sides = (begin + 1 + done) % count, 1
+        together, points = sizes[first], parts[first]
+        if begin < 0:
+            points = 1
+        elif points == 0:
+            while parts[(first + sides) % count] == 0:
+                together += sizes[(first + sides) % count]
+                sides += 1
+            points = math.floor(together / step + ROUNDED)
+        side, before = first, 0.0
+        for part in range(points):
+            at = (part + 0.5) / points * together
+            while at > before + sizes[side] and side != (first + sides - 1) % count:
+                before += sizes[side]
+                side = (side + 1) % count
+            share, m = (part + 0.5) / points, (side + 1) % count
+            if sides > 1:
+                share = min(max((at - before) / sizes[side], 0.0), 1.0)
             for axis in range(2):
-                xy[i, axis] = corners[k, axis] + share * (corners[m, axis] - corners[k, axis])
+                xy[i, axis] = corners[side, axis] + share * (corners[m, axis] - corners[side, axis])
             i += 1
-    return xy, length
+        done += sides
+    return xy[:i].copy(), length
 
 
 @compiled_later

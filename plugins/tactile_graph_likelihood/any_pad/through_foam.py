@@ -37,6 +37,10 @@ side are not told apart."""
 NARROWEST = 0.3
 """Width of foam, in cells, that there is none where not even that is possible."""
 
+LEAKED, LEAKS = 0.1, 0.05
+"""Of a neighbour's reading, what reads less may be carried there; share of such readings from which
+on loads are carried, if by less than foam."""
+
 WIDER, HALVINGS = 1.2, 4
 """Factor from one width that is tried to the next, and halvings of what lies between the last."""
 
@@ -66,6 +70,14 @@ believed; by how much less wide foam is tried otherwise."""
 DISTINCT, CONTRADICTED, STEEPER = 1.06, 0.003, 1.5
 """Times the width, and what that must leave of the readings at least, also over what the width
 itself leaves, for it to be too wide."""
+
+BARED, WORSE = 0.18, 9.6
+"""Share of what shows that bears nothing, and times that wider foam leaves more of the readings,
+that each would tell foam alone: where neighbours are alike anyway, foam is possible, too, but bares
+nothing and can be of many widths."""
+
+EXACT = 1e-9
+"""What is left of readings at least, for more to be times that."""
 
 FAINT = 0.15
 """Of the median load, below which one counts as none."""
@@ -117,36 +129,54 @@ def without_foam(readings: Readings, told_cm: float = 0.0) -> Readings | None:
     as_told = LEAST_TOLD <= told <= MOST_TOLD and (
         undone.call(part.loads, part.states, told, 0.0, loads, limits) < UNEXPLAINED
     )
-    if not as_told and not _undone(part, loads, limits):
+    if not as_told and not _is_foam(part, loads, limits):
         return None
-    usual = float(np.median(loads[part.seen & (loads > 0.0)]))
-    if not as_told and bare_rim.call(loads, part.states, usual) < BARE:
-        return None
-    return _laid_open(readings, part, loads, limits, FAINT * usual)
+    return _laid_open(readings, part, loads, limits, FAINT * _usual(part, loads))
+
+
+def _usual(part: Part, loads: Values) -> float:
+    return float(np.median(loads[part.seen & (loads > 0.0)]))
+
+
+def _is_foam(part: Part, loads: Values, limits: Values) -> bool:
+    """Write loads and limits as `undone` does; return whether it is foam that was undone."""
+    worse = _undone(part, loads, limits)
+    if worse == 0.0:
+        return False
+    usual = _usual(part, loads)
+    bared = float((loads[part.seen] < NOTHING * usual).mean())
+    tells = bared / BARED + worse / WORSE >= 1.0
+    return tells and bool(bare_rim.call(loads, part.states, usual) >= BARE)
 
 
 def has_no_foam(readings: Readings) -> bool:
-    """Return whether readings lie so far below their neighbours that there is no foam."""
+    """Return whether readings lie so far below their neighbours that there is no foam.
+
+    Nor anything else that carries a little of each load to the neighbours.
+    """
     part = _shown(readings)
-    return part is not None and widest.call(part.loads, part.states, NARROWEST) == 0.0
+    if part is None or widest.call(part.loads, part.states, NARROWEST) > 0.0:
+        return False
+    return leaked.call(part.loads, part.states) < LEAKS
 
 
-def _undone(part: Part, loads: Values, limits: Values) -> bool:
-    """Write loads and limits as `undone` does; return whether it is foam, of a width that is told.
+def _undone(part: Part, loads: Values, limits: Values) -> float:
+    """Write loads and limits as `undone` does; return how many times more wider foam leaves.
 
-    It is if wider foam explains readings clearly worse.
+    0 where it does not explain readings clearly worse: there is no foam of a width that is told.
     """
     width = widest.call(part.loads, part.states, FIRST)
     if width >= MOST:
-        return False
+        return 0.0
     while width >= FIRST:
         left = undone.call(part.loads, part.states, width, 0.0, loads, limits)
         if left < UNEXPLAINED:
             least, other = max(CONTRADICTED, STEEPER * left), np.empty(loads.shape)
             wider = DISTINCT * width
-            return bool(undone.call(part.loads, part.states, wider, least, other, other) >= least)
+            more = undone.call(part.loads, part.states, wider, least, other, other)
+            return more / max(left, EXACT) if more >= least else 0.0
         width *= NARROWER
-    return False
+    return 0.0
 
 
 def _shown(readings: Readings) -> Part | None:
@@ -339,6 +369,25 @@ def bare_rim(loads: Values, states: States, usual: float) -> float:
             little += beside
             nothing += beside and loads[i, j] < NOTHING * usual
     return nothing / little if little >= FEW else 1.0
+
+
+@compiled_as_is
+def leaked(loads: Values, states: States) -> float:
+    """Return the share of what shows that reads little beside one of its neighbours."""
+    rows, cols = loads.shape
+    little = seen = 0
+    for i in range(rows):
+        for j in range(cols):
+            if states[i, j] not in (ON, OVER):
+                continue
+            largest = 0.0
+            for r in range(max(i - 1, 0), min(i + 2, rows)):
+                for c in range(max(j - 1, 0), min(j + 2, cols)):
+                    if states[r, c] in (ON, OVER):
+                        largest = max(largest, loads[r, c])
+            seen += 1
+            little += loads[i, j] < LEAKED * largest
+    return little / max(seen, 1)
 
 
 @compiled_as_is

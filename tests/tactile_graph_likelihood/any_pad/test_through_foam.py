@@ -1,6 +1,7 @@
 """Foam that lies on a pad, undone."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -42,13 +43,27 @@ def carried(loads: np.ndarray, taps: np.ndarray) -> np.ndarray:
     return loads
 
 
-def pressed(seed: int, voids: float = 0.15) -> np.ndarray:
+def even(u2: np.ndarray) -> np.ndarray:
+    return np.ones_like(u2)
+
+
+def ball(u2: np.ndarray) -> np.ndarray:
+    return np.sqrt(np.maximum(1.0 - u2, 0.0))
+
+
+def pressed(
+    seed: int,
+    voids: float = 0.15,
+    sigma: float = 0.5,
+    face: Callable[[np.ndarray], np.ndarray] = even,
+) -> np.ndarray:
     """Loads of a disc: nothing beyond it, uneven gains and voids within."""
     rng = np.random.default_rng(seed)
     far = np.hypot(MIDDLE - CENTRES_CM[0], MIDDLE[:, None] - CENTRES_CM[1])
     covered = np.clip(0.5 + RADIUS_CM - far, 0.0, 1.0)
-    gains = np.exp(0.5 * rng.standard_normal(far.shape))
-    return 80.0 * covered * gains * (rng.random(far.shape) >= voids)
+    gains = np.exp(sigma * rng.standard_normal(far.shape))
+    borne = covered * face(np.square(far / RADIUS_CM)) * gains
+    return 80.0 * borne * (rng.random(far.shape) >= voids)
 
 
 def readings_of(loads: np.ndarray, least: float = LEAST) -> Readings:
@@ -101,6 +116,27 @@ def test_loads_under_foam_are_those_that_were_pressed() -> None:
 def test_a_bare_pad_has_no_foam(voids: float) -> None:
     found = [without_foam(readings_of(pressed(seed, voids))) for seed in range(100)]
     assert sum(its is not None for its in found) <= 3
+
+
+@pytest.mark.parametrize("face", [even, ball])
+@pytest.mark.parametrize("sigma", [0.2, 0.3])
+def test_a_bare_pad_of_like_elements_has_no_foam(
+    sigma: float, face: Callable[[np.ndarray], np.ndarray]
+) -> None:
+    found = [without_foam(readings_of(pressed(seed, 0.0, sigma, face))) for seed in range(60)]
+    assert sum(its is not None for its in found) <= 5
+
+
+def test_foam_on_a_pad_of_like_elements_is_seen() -> None:
+    foam = [carried(pressed(seed, 0.15, 0.2), by_foam(0.52)) for seed in range(30)]
+    assert all(without_foam(readings_of(its)) is not None for its in foam)
+
+
+@pytest.mark.parametrize("share", [0.01, 0.02, 0.03])
+def test_what_carries_less_than_foam_is_left_to_the_fit(share: float) -> None:
+    taps = np.array([share, 1.0 - 2.0 * share, share])
+    leaking = [has_no_foam(readings_of(carried(pressed(s), taps), 0.3)) for s in range(30)]
+    assert not any(leaking)
 
 
 def test_readings_far_below_their_neighbours_leave_no_foam_possible() -> None:
