@@ -281,7 +281,9 @@ def not_a_path(name: str) -> str:
     return ""
 
 
-def check_target(option: str, name: Name, endings: Sequence[str] = ()) -> None:
+def check_target(
+    option: str, name: Name, endings: Sequence[str] = (), told_by_name: bool = False
+) -> None:
     """Refuse a file that could not be written in the end, before the work.
 
     Parameters
@@ -292,6 +294,9 @@ def check_target(option: str, name: Name, endings: Sequence[str] = ()) -> None:
     endings : sequence of str, optional
         Those that a file of its format has, as ``.json``: a file of another kind is not written
         over by mistake. Pipes and devices may have any name.
+    told_by_name : bool, optional
+        Whether the name tells which of several formats is written, or those of other files: pipes
+        and devices then need an ending, too.
 
     Raises
     ------
@@ -303,7 +308,7 @@ def check_target(option: str, name: Name, endings: Sequence[str] = ()) -> None:
         raise UsageError(f"{option} {name}: there is no folder {str(folder)!r}")
     if path.is_dir():
         raise UsageError(f"{option} {name}: is a folder; name a file in it")
-    if endings and path.suffix.lower() not in endings and is_plain(name):
+    if endings and path.suffix.lower() not in endings and (told_by_name or is_plain(name)):
         near = did_you_mean(path.suffix, endings) if path.suffix else ""
         raise UsageError(f"{option} {name}: its name must end in {', '.join(endings)}{near}")
     written = Path(os.path.realpath(path)).parent if is_plain(path) else path

@@ -41,7 +41,7 @@ def check_picture(path: str | Path) -> Path:
         If its name's ending is no known format, or its folder is not there.
     """
     path = Path(path)
-    check_target("--plot", path, FORMATS)
+    check_target("--plot", path, FORMATS, told_by_name=True)
     return path
 
 

@@ -96,7 +96,7 @@ def _check(
         ("--plots", plots, (".html",)),
     ):
         if path is not None:
-            check_target(option, path, endings)
+            check_target(option, path, endings, told_by_name=option == "-o")
     written = [("-o", path) for path in files_of(output)] if output is not None else []
     check_targets([*written, ("--plots", plots)])
     if not overwrite:

@@ -10,6 +10,9 @@ GOES_ON, WRAPS = 1 / 16, 1 / 8
 """Of a counter's range: so near to one of the last two stamps, a stamp goes on from there; so near
 over the counter's end, it wrapped. Any other is a damaged stamp, a long pause, or a device that
 started anew."""
+SHORT_S = 30.0
+"""Within this a step on over the end is a wrap up to half a turn: a counter of 16 bits or fewer may
+go round within a few frames."""
 
 
 class DeviceClock:
@@ -55,4 +58,9 @@ class DeviceClock:
             if turn + over >= 0 and max(then, tick) < self.modulus
         ]
         step, wrapped = min(steps, default=(self.modulus, 0))
-        return wrapped if step < WRAPS * self.modulus else pasts[0][1]
+        if step < WRAPS * self.modulus:
+            return wrapped
+        then, turn = pasts[0]
+        ahead = tick + self.modulus - then
+        over = then < self.modulus and ahead < min(self.modulus / 2, SHORT_S / self.unit_s)
+        return turn + over

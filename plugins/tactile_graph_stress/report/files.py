@@ -21,7 +21,7 @@ def check_ending(path: Path) -> None:
     ------
     UsageError
     """
-    check_target("-o", path, ENDINGS)
+    check_target("-o", path, ENDINGS, told_by_name=True)
 
 
 def write(path: Path, rows: Sequence[Row], command: str) -> None:

@@ -205,7 +205,7 @@ def _check_files(asked: _Options) -> None:
             raise UsageError(f"-o {asked.written}: is there already; name another file")
         check_target("-o", asked.written)
     if asked.plot is not None:
-        check_target("--plot", asked.plot, PICTURES)
+        check_target("--plot", asked.plot, PICTURES, told_by_name=True)
     if asked.json_path is not None:
         check_target("--json", asked.json_path, (".json",))
 

@@ -47,7 +47,7 @@ def check_plot(path: str) -> None:
     ------
     UsageError
     """
-    check_target("--plot", path, (*PICTURES, *FILMS))
+    check_target("--plot", path, (*PICTURES, *FILMS), told_by_name=True)
     if Path(path).suffix.lower() == ".mp4":
         from tactile_graph.draw.film_files import ffmpeg
 

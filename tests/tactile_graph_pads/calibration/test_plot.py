@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -58,5 +59,7 @@ def test_it_is_written(tmp_path: Path, ending: str) -> None:
 def test_a_name_that_cannot_be_drawn_to_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"--plot c.doc: its name must end in .png, .svg, .pdf"):
         check_picture("c.doc")
+    with pytest.raises(UsageError, match=r"its name must end in .png, .svg, .pdf"):
+        check_picture(os.devnull)
     with pytest.raises(UsageError, match="there is no folder"):
         check_picture(tmp_path / "none" / "c.png")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -290,6 +291,7 @@ def test_mistakes_of_the_command_line_are_told_before_the_work(tmp_path: Path) -
     empty, objects = MadeUpPad().recorded(tmp_path, n_objects=12)
     assert "nothing to learn from" in refused()
     assert "must end in .yaml" in refused("-e", empty, "-o", tmp_path / "pad.txt")
+    assert "must end in .yaml" in refused("-e", empty, "-o", os.devnull)
     assert "is given as empty and as a recording of objects" in refused("-e", empty, empty)
     assert "unknown setting 'pich_cm'; did you" in refused("-e", empty, "--with", "pich_cm=1")
     assert "are named on the command line" in refused("-e", empty, "--with", "path=a.npy")

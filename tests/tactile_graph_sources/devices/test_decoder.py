@@ -579,6 +579,24 @@ def test_the_devices_clock_goes_on_when_its_counter_wraps() -> None:
     assert np.diff(clock.seconds(ticks)) == pytest.approx([1e-3] * 3)
 
 
+@pytest.mark.parametrize(
+    ("unit_s", "turn", "step"),
+    [
+        (1e-6, 2**16, 10_000),  # microseconds of 16 bits at 100 Hz
+        (1e-3, 2**8, 50),  # milliseconds of 8 bits at 20 Hz
+        (1e-3, 2**16, 10_000),  # a frame every ten seconds
+    ],
+)
+@pytest.mark.parametrize("first", [0.0, 0.3, 0.9])
+def test_a_counter_that_goes_round_within_a_few_frames_wraps(
+    unit_s: float, turn: int, step: int, first: float
+) -> None:
+    true = int(first * turn) + np.arange(50) * step
+    true[30:] += step  # one is lost, and later ones a little late
+    true[40:] += step // 3
+    assert DeviceClock(unit_s, turn).seconds(true % turn) == pytest.approx([*(true * unit_s)])
+
+
 TURN = 2**32
 
 

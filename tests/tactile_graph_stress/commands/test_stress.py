@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 
 import pytest
 from click.testing import CliRunner
@@ -95,6 +96,7 @@ def test_ctrl_c_shows_and_writes_the_steps_that_are_done(tmp_path, monkeypatch):
     ("args", "words"),
     [
         (["-o", "out.txt"], r"its name must end in .md, .csv, .json"),
+        (["-o", os.devnull], r"its name must end in .md, .csv, .json"),
         (["-o", "no/such/out.md"], r"there is no folder 'no/such'"),
         (["nothing"], r"no step, kind or plugin named 'nothing' can be stressed"),
         (["--seed", "-1"], r"--seed must be >= 0, got -1"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from pathlib import Path
 
@@ -96,6 +97,7 @@ def test_a_free_setting_is_chosen_where_it_errs_less(hand_made):
         (("ladder.yaml", "-o", "ladder.yaml"), "is there already; name another file"),
         (("ladder.yaml", "-o", "out.txt"), "a pipeline file ends in .yaml"),
         (("ladder.yaml", "--plot", "out.txt"), "its name must end in .png"),
+        (("ladder.yaml", "--plot", os.devnull), "its name must end in .png"),
         (("ladder.yaml", "--error-at-most", "1", "--time-at-most", "1"), "not both"),
         (("ladder.yaml", "--time-at-most", "0", *QUICK), "the cheapest choice takes"),
         (("discs", "--with", "frames=9", "--set", "circle.crash=true"),

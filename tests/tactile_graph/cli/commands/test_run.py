@@ -315,6 +315,7 @@ def test_without_a_step_that_reads_recordings_it_is_said(tmp_path, monkeypatch):
         (["-o", "."], "-o .: is a folder; name a file in it"),
         (["--plot", "strip.jpg"], "--plot strip.jpg: its name must end in .png, .svg, .pdf, .gif, "
                                   ".mp4; did you mean '.png'?"),
+        (["--plot", os.devnull], "its name must end in .png, .svg, .pdf, .gif, .mp4"),
         (["--full"], "--full: a table holds single numbers only; give -o FILE.jsonl or -o -"),
         (["--full", "-o", "out.csv"], "--full: CSV holds single numbers only"),
         (["--seed", "-1"], "'--seed'"),
