@@ -260,9 +260,7 @@ def reader_settings(step: str, texts: Sequence[str]) -> dict[str, Any]:
     UsageError
         If one is wrong, is none, or names the recording, which stands on the command line.
     """
-    from tactile_graph.pipeline.document import assignment
-
-    given = dict(assignment("--with", text) for text in texts)
+    given = source_settings_of(step, texts)
     if not given:
         return {}
     _, target = _reader(step, ["RECORDING"])
