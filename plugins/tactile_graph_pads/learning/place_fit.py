@@ -33,7 +33,7 @@ RADIUS_STEPS = 3.5
 class KnownContacts(NamedTuple):
     """Contacts whose true place is known: the frame (its values, good elements and all centres)
     each lies in, its own number there, true centre, and group; n of each. And of how many places
-    told how many met a contact."""
+    told, in frames that something touches, how many met a contact."""
 
     frames: tuple[tuple[Array, Array], ...]
     frame: NDArray[np.int64]
@@ -115,8 +115,10 @@ def known_contacts(
     held: list[tuple[Array, Array]] = []
     rows: list[tuple[int, int, Array, Array, int]] = []
     sizes: list[int] = []
+    n_told = 0
     for values, places, of in zip(frames, true, group.tolist(), strict=True):
         found = contacts_of(values, level)
+        n_told += len(places) if len(found.centres) else 0  # one place may be told of all frames
         gate = max(2.5, 1.2 * float(np.sqrt(found.cells.max(initial=1) / np.pi)))
         pairs = paired(found.centres, places, gate)
         for i, j in pairs:
@@ -133,7 +135,7 @@ def known_contacts(
         np.array([r[3] for r in kept]).reshape(-1, 2),
         np.array([r[4] for r in kept], np.int64),
         float(np.sqrt(np.median(sizes) / np.pi)) if sizes else 0.0,
-        sum(len(places) for places in true),
+        n_told,
         len(rows),
     )
 

@@ -279,6 +279,8 @@ def test_settings_of_the_reader_hold_for_all_recordings(tmp_path: Path) -> None:
         given += [f"{path}={path.stem}"] if path.stem != "e" else ["--empty", path]
     told = ("--with", "rows=4", "--with", "columns=6", "--with", "quantity=volt")
     assert "V" in run(*given, *told, "--fit", "isotonic")
+    # a text need not be YAML: it is the reader that has no use for it
+    refused(DataError, "time_format: its times", *given, "--with", "time_format=%H:%M")
     refused(UsageError, "rows", *given, "--with", "rows=0")
 
 

@@ -125,3 +125,13 @@ def test_a_file_that_is_none_is_refused(tmp_path: Path) -> None:
     np.savez(tmp_path / "q.npz", weights=np.zeros(3))
     with pytest.raises(DataError, match="cannot be read"):
         read_place(tmp_path / "q.npz")
+
+
+def test_places_told_of_frames_in_which_nothing_touches_are_not_held_against_them() -> None:
+    frames, true = contacts(20, 0.6)
+    empty = [0.2 * np.random.default_rng(9).standard_normal(SHAPE)] * 60
+    known = known_contacts([*frames, *empty], [*true, *true * 3], np.arange(80) // 4, 5.0)
+    assert (known.n_told, known.n_met, known.unlike) == (20, 20, False)
+    beside = known_contacts(frames, [p + 9.0 for p in true], np.arange(20), 5.0)
+    assert beside.n_told == 20
+    assert beside.unlike
