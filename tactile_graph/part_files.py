@@ -19,6 +19,8 @@ _HELD = (errno.EACCES, errno.EPERM, errno.EBUSY)
 """A file cannot be replaced: a program has it open on Windows, it is another person's in a folder
 for all, or a disc of its own is mounted on it.
 """
+_NO_RENAMING = (errno.ENOSYS, errno.EOPNOTSUPP, errno.EXDEV)
+"""A file system knows no renaming, or not there."""
 
 
 def part_of(target: Path) -> Path:
@@ -94,7 +96,7 @@ def put_over(new: Path, older: Path) -> None:
     try:
         os.replace(new, older)
     except OSError as error:
-        if error.errno not in _HELD:
+        if error.errno not in (*_HELD, *_NO_RENAMING):
             raise
         _write_into(older, new)
 

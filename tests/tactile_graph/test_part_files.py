@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import ctypes
+import errno
 import os
 import signal
 import subprocess
@@ -14,7 +15,7 @@ import pytest
 from tactile_graph import part_files
 from tactile_graph.errors import UsageError
 from tactile_graph.files import whole_file
-from tactile_graph.part_files import part_of, put_in_place
+from tactile_graph.part_files import part_of, put_in_place, put_over
 
 KILLED = """
 import os, signal, sys
@@ -191,6 +192,22 @@ def test_a_disc_that_is_full_as_an_older_file_is_written_into_takes_neither(
     with told, whole_file(tmp_path / "a.csv") as file:
         file.write(b"new")
     assert (tmp_path / f"a.new-{os.getpid()}.csv").read_text() == "new"
+
+
+@pytest.mark.parametrize("number", [errno.EACCES, errno.ENOSYS, errno.EXDEV])
+def test_lines_are_written_into_an_older_file_that_cannot_be_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
+) -> None:
+    new, older = tmp_path / "a.unfinished.csv", tmp_path / "a.csv"
+    new.write_text("new")
+    older.write_text("older and longer")
+
+    def not_it(part: Path, target: Path) -> None:
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(os, "replace", not_it)
+    put_over(new, older)
+    assert older.read_text() == "new"
 
 
 def test_a_file_that_can_be_neither_replaced_nor_written_into_lies_beside_it(
