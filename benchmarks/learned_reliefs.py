@@ -44,6 +44,7 @@ Values = NDArray[np.float64]
 Frames = dict[str, list[Frame]]
 WAYS = ("identify-any", "identify-reliefs")
 LOST = (0.01, 0.025, 0.036, 0.05, 0.1)
+BEYOND = float(np.nextafter(1.0, 2.0))
 
 
 class Answers(NamedTuple):
@@ -112,8 +113,13 @@ def identities(pipeline: Pipeline, frames: Iterable[Frame]) -> list[Identity]:
 
 
 def over_limit(found: Iterable[Identity]) -> Values:
-    """Return distances over the limit."""
-    return np.array([one.distance / one.limit for one in found if one.limit])
+    """Return distances over the limit, beyond it of all that is unknown.
+
+    What is near enough, and unknown for another reason (it lies partly off the pad, and may be the
+    runner-up too), counts as just beyond it.
+    """
+    ratios = ((one.distance / one.limit, one.known) for one in found if one.limit)
+    return np.array([far if known else max(far, BEYOND) for far, known in ratios])
 
 
 def answers(store: ObjectDatabase, tested: Frames, foreign: Frames, say: bool) -> list[Answers]:

@@ -70,7 +70,8 @@ def identify(
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
     report = Report()
     runner = opened.runner([node], seed)
-    lines = _Together(opened, node, together) if together else _Lines(node)
+    several = len(recordings) > 1
+    lines = _Together(opened, node, together) if together else _Lines(node, several)
     other: Instrument | None = None
     by_law = False
     with answered_meanwhile():
@@ -122,22 +123,21 @@ def _identifying(pipeline: Pipeline, only: tuple[str, ...]) -> str:
     raise UsageError(f"pipeline {pipeline.name!r} has {what}; name one with --only")
 
 
-def _named(result: Result, node: str) -> Any:
+def _named(result: Result, node: str, several: bool) -> Any:
     """Return the outcome of the node that identifies.
 
     Raises
     ------
     OtherQuantityError, OtherPadError
         If the frame is in another unit than the objects were learned in, or of another pad than
-        the one that their reliefs were learned on.
+        the one that their reliefs were learned on: of several recordings each may be of its own.
     """
     from tactile_graph.engine.outcomes.outcome import Failed
     from tactile_graph_classifiers.database.known import OtherPadError, OtherQuantityError
 
     outcome: Any = result.outcome(node)
-    if isinstance(outcome, Failed) and isinstance(
-        outcome.error, OtherPadError | OtherQuantityError
-    ):
+    ends = (OtherQuantityError,) if several else (OtherPadError, OtherQuantityError)
+    if isinstance(outcome, Failed) and isinstance(outcome.error, ends):
         raise outcome.error  # no other frame of these recordings would fare better
     return outcome
 
@@ -145,8 +145,8 @@ def _named(result: Result, node: str) -> Any:
 class _Lines:
     """A line a frame, and what they came to."""
 
-    def __init__(self, node: str) -> None:
-        self.node = node
+    def __init__(self, node: str, several: bool = False) -> None:
+        self.node, self.several = node, several
         self.n_failed = 0
         self.counts: Counter[str] = Counter()
         self.n_true = self.n_right = 0
@@ -162,7 +162,7 @@ class _Lines:
         from tactile_graph.engine.outcomes.outcome import Failed, Skipped
         from tactile_graph_classifiers.measuring.shapes import true_name
 
-        outcome = _named(result, self.node)
+        outcome = _named(result, self.node, self.several)
         if not self.counts:
             say(f"frame  {_line(*HEAD)}")
         start = f"{result.frame.index:>5}  "
@@ -180,8 +180,8 @@ class _Lines:
 
         self.counts[identity.name] += 1
         if not identity.known:
-            note = f"nearest: {identity.nearest}, accepted up to {identity.limit:.3g} {note} "
-            note += f"; {identity.note}" if identity.note else ""
+            why = f"; {identity.note}" if identity.note else ""
+            note = f"nearest: {identity.nearest}, accepted up to {identity.limit:.3g}{why} {note}"
         if true:
             self.n_true += 1
             right = plain_name(true) == plain_name(identity.name)
@@ -243,7 +243,7 @@ class _Together(_Lines):
         from tactile_graph.engine.outcomes.outcome import Failed, Skipped
         from tactile_graph_classifiers.measuring.shapes import true_name
 
-        outcome = _named(result, self.node)
+        outcome = _named(result, self.node, self.several)
         if isinstance(outcome, Failed | Skipped):
             self.n_failed += isinstance(outcome, Failed)
             self._left_out[outcome.reason.partition(" (")[0]] += 1

@@ -14,6 +14,8 @@ from tactile_graph import Frame
 from tactile_graph.api.pipeline import load
 from tactile_graph.cli import cli
 from tactile_graph.cli.endings import ending
+from tactile_graph_classifiers.commands.identify import _Lines
+from tactile_graph_classifiers.distances.identity import UNKNOWN, Identity
 from tactile_graph_sources.writers.write_npz import write_npz
 
 DISCS = {"small": (500.0, 3.8), "large": (2500.0, 6.9), "strange": (5000.0, 5.0)}
@@ -424,3 +426,14 @@ def test_objects_are_identified_by_their_reliefs(recordings):
     code, text = call("identify", "narrow.npz", "--pipeline", "identify-reliefs")
     assert code != 0
     assert text.count("16 x 15 cells of 1.3 cm; reliefs in") == 1
+    code, text = call("identify", "narrow.npz", recordings["large"], "--pipeline",
+                      "identify-reliefs")  # fmt: skip
+    assert code == 1
+    assert text.count("failed: OtherPadError: image: 16 x 15 cells") == len(narrow)
+    assert "right: 1" in text  # the other recording is named all the same
+
+
+def test_a_line_says_why_what_is_near_enough_is_unknown():
+    note = "lies partly off the pad, and may be disc too"
+    it = Identity(UNKNOWN, "", False, 0.9, 2.5, "box", "disc", 1.2, 0.25, note=note)
+    assert _Lines("identity").told(it, "").endswith(f"nearest: box, accepted up to 2.5; {note}")
