@@ -115,7 +115,7 @@ def identities(pipeline: Pipeline, frames: Iterable[Frame]) -> list[Identity]:
 def over_limit(found: Iterable[Identity]) -> Values:
     """Return distances over the limit, beyond it of all that is unknown.
 
-    What is near enough, and unknown for another reason (it lies partly off the pad, and may be the
+    What is near enough, and unknown for another reason (it reaches the pad's edge, and may be the
     runner-up too), counts as just beyond it.
     """
     ratios = ((one.distance / one.limit, one.known) for one in found if one.limit)

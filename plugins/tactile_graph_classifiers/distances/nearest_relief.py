@@ -62,7 +62,7 @@ class NearestRelief:
     cells over what is usual for the object, times a low power of the discriminant's squared
     distance over what is usual for it. What is accepted is the quantile of presses left out while
     reliefs and discriminant were learned (cross-conformal prediction: V. Vovk, 2015,
-    doi:10.1007/s10472-013-9368-4). What lies partly off the pad is not seen whole: its press is
+    doi:10.1007/s10472-013-9368-4). What reaches the pad's edge may go on beyond: its press is
     unknown, and a note says why, where the runner-up would be accepted too.
     """
 
@@ -154,7 +154,7 @@ class NearestRelief:
         single, note = len(objects) == 1, ""
         known = self._limit is None or scores[0] <= self._limit
         if self._limit is not None and partly_off and not single and scores[1] <= self._limit:
-            known, note = False, f"lies partly off the pad, and may be {objects[1].name} too"
+            known, note = False, f"reaches the pad's edge, and may be {objects[1].name} too"
         return Identity(
             objects[0].name if known else UNKNOWN,
             objects[0].shape if known else "",

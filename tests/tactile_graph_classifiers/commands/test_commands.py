@@ -434,6 +434,6 @@ def test_objects_are_identified_by_their_reliefs(recordings):
 
 
 def test_a_line_says_why_what_is_near_enough_is_unknown():
-    note = "lies partly off the pad, and may be disc too"
+    note = "reaches the pad's edge, and may be disc too"
     it = Identity(UNKNOWN, "", False, 0.9, 2.5, "box", "disc", 1.2, 0.25, note=note)
     assert _Lines("identity").told(it, "").endswith(f"nearest: box, accepted up to 2.5; {note}")

@@ -86,7 +86,7 @@ def test_what_lies_partly_off_the_pad_is_known_only_if_nothing_else_may_be_it(pa
         assert it.known == (it.distance <= it.limit < it.runner_up_distance)
         assert bool(it.note) == (it.runner_up_distance <= it.limit)
     assert any(it.known for it in names)
-    assert any(it.note == "lies partly off the pad, and may be disc too" for it in names)
+    assert any(it.note == "reaches the pad's edge, and may be disc too" for it in names)
 
 
 def _pushed_off(frame: Frame) -> Frame:
