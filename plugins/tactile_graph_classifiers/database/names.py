@@ -39,7 +39,10 @@ def is_of_recording(source: str, file: str) -> bool:
         As it was named when it was learned.
     """
     told, parts = recording_of(source), PurePath(file).parts
-    if told == file or told.startswith(f"{file} "):
+    if told == file:
+        return True
+    other = PurePath(told).suffix and not PurePath(file).suffix  # `press 2.csv` is none of `press`
+    if told.startswith(f"{file} ") and not other:
         return True
     labels = ("/".join(parts[-n:]) for n in range(1, len(parts) + 1))
     return any(
