@@ -38,8 +38,9 @@ def first_fit(image: Image, pad: Pad, gap_cm: float | None, any_pad: AnyPad) -> 
     Gains were learned under some objects and need not hold under others: foam spreads loads over
     neighbours, and dividing by gains makes such readings less even, not more. Where they scatter
     more like those that were not evened, after more attempts too if one may have gone astray, both
-    are fitted, and what is likelier is kept: the density of readings' logarithms is the same but
-    for that.
+    are fitted. Foam that is seen in one of them alone tells that it is right: gains that do not hold
+    leave readings as they like beside each other. Else what is likelier is kept: the density of
+    readings' logarithms is the same but for the gains.
 
     Raises
     ------
@@ -54,7 +55,13 @@ def first_fit(image: Image, pad: Pad, gap_cm: float | None, any_pad: AnyPad) -> 
     if not _scatters(found, any_pad):
         return found
     other = _fitted(observed(image, pad, gap_cm, evened=False), plain)
+    if _foam(found) != _foam(other):
+        return other if _foam(other) else found
     return other if other.even.evidence > found.even.evidence else found
+
+
+def _foam(found: FirstFit) -> bool:
+    return found.readings.through_foam is not None
 
 
 def _fitted(readings: Readings, any_pad: AnyPad) -> FirstFit:
