@@ -38,9 +38,9 @@ def first_fit(image: Image, pad: Pad, gap_cm: float | None, any_pad: AnyPad) -> 
     Gains were learned under some objects and need not hold under others: foam spreads loads over
     neighbours, and dividing by gains makes such readings less even, not more. Where they scatter
     more like those that were not evened, after more attempts too if one may have gone astray, both
-    are fitted. Foam that is seen in one of them alone tells that it is right: gains that do not hold
-    leave readings as they like beside each other. Else what is likelier is kept: the density of
-    readings' logarithms is the same but for the gains.
+    are fitted. Foam that is seen in one of them alone tells that it is right, since gains that do
+    not hold hide it. Else what is likelier is kept: the density of readings' logarithms is the same
+    but for the gains.
 
     Raises
     ------
