@@ -11,25 +11,23 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import SQRT_HALF
+from tactile_graph_likelihood.single.load_shares import foam_weights
 
-REACH, FAINTEST = 3.5, 1e-5
-"""Widths that foam carries a load at most, and the share of it that it need not carry farther."""
+FAINTEST = 1e-5
+"""Share of a load that foam need not carry farther."""
 
 TINY = 1e-12
 
 
 @compiled_as_is
 def shares_of(width: float) -> Values:
-    """Return the shares of a load that foam passes on 0, 1, 2, ... cells along an axis."""
-    most = math.ceil(REACH * width) + 1
-    shares, n, near = np.empty(most + 1), 0, 0.5 * math.erfc(0.5 / width * SQRT_HALF)
-    shares[0] = 1.0 - 2.0 * near
-    while n < most and near > FAINTEST:
+    """Return `foam_weights` as far as more than the faintest share is carried on."""
+    weights, n = foam_weights(width), 0
+    beyond = 0.5 * (1.0 - weights[0])
+    while n + 1 < weights.shape[0] and beyond > FAINTEST:
         n += 1
-        far = 0.5 * math.erfc((n + 0.5) / width * SQRT_HALF)
-        shares[n], near = near - far, far
-    return shares[: n + 1]
+        beyond -= weights[n]
+    return weights[: n + 1]
 
 
 @compiled_as_is

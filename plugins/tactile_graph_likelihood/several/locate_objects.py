@@ -95,8 +95,7 @@ class LocateObjects:
             SeveralSettings, Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm")
         ] = SEVERAL,
     ) -> None:
-        self._pad, self._gap_cm = settings.known_pad, settings.gap_cm
-        self._told = settings.noise
+        self._pad, self._gap_cm, self._told = settings.known_pad, settings.gap_cm, settings.noise
         self.expected = settings.expected(kinds, most, more)
 
     def __call__(self, image: NearlySquare) -> Footprints:

@@ -202,13 +202,20 @@ def blurred(shares: Values, width: float, box: Box, rows: int, columns: int) -> 
 
 
 @compiled_as_is
-def passed_on(values: Values, width: float, box: Box, rows: int, columns: int) -> Values:
-    """Return the same of any values, the faintest too."""
+def foam_weights(width: float) -> Values:
+    """Return the shares of a load that foam passes on 0, 1, 2, … cells along an axis."""
     reach = math.ceil(FOAM_REACH * width) + 1
     weights = np.empty(reach + 1)
     for k in range(reach + 1):
         far = 0.5 * math.erfc(-(k + 0.5) / width * SQRT_HALF)
         weights[k] = far - 0.5 * math.erfc(-(k - 0.5) / width * SQRT_HALF)
+    return weights
+
+
+@compiled_as_is
+def passed_on(values: Values, width: float, box: Box, rows: int, columns: int) -> Values:
+    """Return the same of any values, the faintest too."""
+    weights = foam_weights(width)
     turned = _blurred_down(values, weights, box[0], rows)
     return _blurred_down(turned.T.copy(), weights, box[1], columns).T.copy()
 
