@@ -23,6 +23,7 @@ Plain = dict[str, Any]
 ROWS, COLUMNS, PITCH_CM = 8, 10, 1.3
 NAMES = ("footprint", "boundary", "circle")
 PATIENCE_S = 30.0
+BEAT_S = 2.0  # a page takes six seconds without a word for a server that hangs
 
 
 def hello(**more: Any) -> Plain:
@@ -120,10 +121,14 @@ class Double:
         What pages sent, without their answers to frames.
     answered : list of int
         Indices of the frames they said were drawn.
+    hangs : bool
+        Whether no word comes between what a test says. Else a slow machine lets a page believe so,
+        which connects anew and forgets what it was told.
     """
 
-    def __init__(self, *greeting: Plain) -> None:
+    def __init__(self, *greeting: Plain, hangs: bool = False) -> None:
         self.greeting = list(greeting or (hello(), graph(), pulse(), frame(0)))
+        self.hangs = hangs
         self.asked: list[Plain] = []
         self.answered: list[int] = []
         self.address = ""
@@ -140,10 +145,12 @@ class Double:
     async def serve(self, websocket: Any) -> None:
         """Serve a page until it goes."""
         self._loop = asyncio.get_running_loop()
-        for message in self.greeting:
-            await websocket.send_text(json.dumps(message))
+        # Before the greeting: once a page shows it, a test may speak.
         self._sockets.append(websocket)
+        beats = None if self.hangs else asyncio.create_task(self._beat(websocket))
         try:
+            for message in self.greeting:
+                await websocket.send_text(json.dumps(message))
             while True:
                 told = json.loads(await websocket.receive_text())
                 if told["type"] == "pong":
@@ -152,12 +159,23 @@ class Double:
                     self.asked.append(told)
         except Exception:  # however it goes away
             self._sockets.remove(websocket)
+        finally:
+            if beats:
+                beats.cancel()
+
+    @staticmethod
+    async def _beat(websocket: Any) -> None:
+        """Say now and then what is no message, and so changes nothing."""
+        while True:
+            await asyncio.sleep(BEAT_S)
+            await websocket.send_text(" ")
 
     async def serve_results(self, websocket: Any) -> None:
         """No program looks."""
 
     def say(self, *messages: Plain | str) -> None:
         """Send messages to all pages; a text goes as it is."""
+        wait_for(lambda: bool(self._sockets), "a page is there")
         assert self._loop is not None
         for message in messages:
             text = message if isinstance(message, str) else json.dumps(message)

@@ -80,7 +80,7 @@ def test_tries_come_at_longer_and_longer_intervals(window: Any) -> None:
 
 
 def test_a_server_that_hangs_is_given_up(window: Any) -> None:
-    with served(Double()) as double:
+    with served(Double(hangs=True)) as double:
         page = window().page
         page.goto(double.address)
         page.wait_for_selector("#result-rows tr")
