@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph.compiled import compiled_later
 from tactile_graph_likelihood.geometry.pieces import components
-from tactile_graph_likelihood.single.element_terms import UNKNOWN
+from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN, States
 from tactile_graph_likelihood.single.readings import Readings
 
 NEAR = 2
 """Rows and columns that touched elements of one clump may lie apart: a void may be between them."""
+
+ALONE = 0.26
+"""As `LONE`, of an element with at most one touched neighbour of eight, none in a corner."""
+
+LEFT = 1.5
+"""Touched elements over those that do not stand alone, up to which the others may be strays."""
 
 LONE = 0.4
 """Touched share of an element and its known neighbours below which that is a stray rather than an
@@ -61,17 +66,85 @@ def without_lone(readings: Readings) -> Readings | None:
     Strays are anywhere, and moments count what is far away most. Of an object nearly all neighbours
     are touched, too, even where four in ten of its elements read nothing.
     """
-    shows, known = readings.shows, readings.states != UNKNOWN
-    lone = shows & (_around(shows) < LONE * _around(known))
-    if not lone.any():
+    return _without(readings, LONE)
+
+
+def without_alone(readings: Readings) -> Readings | None:
+    """Return the readings with touched elements unknown of which at most one neighbour is touched.
+
+    Parameters
+    ----------
+    readings : Readings
+
+    Returns
+    -------
+    Readings or None
+        None where none of them lies away from the others, or they are too many for strays.
+    """
+    some = _without(readings, ALONE)
+    if some is None or LEFT * some.touched < readings.touched:
         return None
-    return readings.without(lone)
+    return some if away.call(readings.states, some.states) else None
 
 
-def _around(mask: NDArray[np.bool_]) -> Values:
-    """Return how many of an element and its eight neighbours are in a mask."""
-    wide = np.zeros((mask.shape[0] + 2, mask.shape[1] + 2))
-    wide[1:-1, 1:-1] = mask
-    rows = wide[:-2] + wide[1:-1] + wide[2:]
-    found: Values = rows[:, :-2] + rows[:, 1:-1] + rows[:, 2:]
-    return found
+def _without(readings: Readings, share: float) -> Readings | None:
+    states = readings.states.copy()
+    lone = unknown_if_lone.call(readings.states, share, states)
+    return readings._replace(states=states, touched=readings.touched - lone) if lone else None
+
+
+@compiled_later
+def away(states: States, without: States) -> bool:
+    """Return whether a touched element that is left out lies away from the box of the others.
+
+    Between the two there is a row or column at least.
+    """
+    rows, columns = states.shape
+    top, left, bottom, right = rows, columns, -1, -1
+    for i in range(rows):
+        for j in range(columns):
+            if without[i, j] == ON or without[i, j] == OVER:
+                top, bottom = min(top, i), max(bottom, i)
+                left, right = min(left, j), max(right, j)
+    for i in range(rows):
+        for j in range(columns):
+            if without[i, j] != UNKNOWN or (states[i, j] != ON and states[i, j] != OVER):
+                continue
+            if i < top - 1 or i > bottom + 1 or j < left - 1 or j > right + 1:
+                return True
+    return False
+
+
+@compiled_later
+def unknown_if_lone(states: States, share: float, without: States) -> int:
+    """Write in another array that touched elements are unknown which stand alone.
+
+    Parameters
+    ----------
+    states : ndarray, shape (R, C)
+    share : float
+        As `LONE`.
+    without : ndarray, shape (R, C)
+        As ``states`` before.
+
+    Returns
+    -------
+    int
+        How many stand alone.
+    """
+    rows, columns = states.shape
+    count = 0
+    for i in range(rows):
+        for j in range(columns):
+            if states[i, j] != ON and states[i, j] != OVER:
+                continue
+            shows = known = 0
+            for k in range(max(i - 1, 0), min(i + 2, rows)):
+                for m in range(max(j - 1, 0), min(j + 2, columns)):
+                    its = states[k, m]
+                    known += its != UNKNOWN
+                    shows += its in (ON, OVER)
+            if shows < share * known:
+                without[i, j] = UNKNOWN
+                count += 1
+    return count

@@ -64,8 +64,8 @@ def tops_of_each(
     for name, any_pad in every.items():
         try:
             if best is None:
-                readings, even = any_pad.first(readings)
-                tops[name] = any_pad.completed(readings, even)
+                its, readings, even = any_pad.first(readings)
+                tops[name] = its.completed(readings, even)
             elif _may_win(any_pad, found[name], best, readings.touched):
                 tops[name] = any_pad.completed(readings, found[name])
             else:
@@ -87,12 +87,14 @@ def _first_look(
     """
     kinds = {any_pad.told.kind: name for name, any_pad in every.items()}
     first = kinds.get(DISC if _is_round(readings) else RECTANGLE, next(iter(every)))
-    lead = every[first].searched(readings)
+    its, lead = every[first].begun(readings)
+    lead = its.sought(readings, lead)
     if lead.mode.height == -math.inf:
         return readings, every, {}
-    if strays := every[first].strays(readings, lead):
+    begun = its is not every[first]
+    if strays := its.told.noise.strays if begun else its.strays(readings, lead):
         every = {name: any_pad.knowing(strays) for name, any_pad in every.items()}
-        lead = every[first].again(readings, lead)
+        lead = lead if begun else every[first].again(readings, lead)
     readings, lead = every[first].cleared(readings, lead)
     found, is_disc = {first: lead}, every[first].told.kind == DISC and lead.fit.surprise > POOR
     for name, any_pad in every.items():

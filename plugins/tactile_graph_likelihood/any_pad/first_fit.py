@@ -65,8 +65,7 @@ def _foam(found: FirstFit) -> bool:
 
 
 def _fitted(readings: Readings, any_pad: AnyPad) -> FirstFit:
-    fits = any_pad.suited(readings)
-    return FirstFit(fits, *fits.first(readings))
+    return FirstFit(*any_pad.suited(readings).first(readings))
 
 
 def _scatters(found: FirstFit, any_pad: AnyPad) -> bool:

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from tactile_graph.errors import Degenerate
+from tactile_graph_likelihood.any_pad.clump import without_alone
 from tactile_graph_likelihood.any_pad.from_frame import (
     AS_LOADS,
     LAW,
@@ -70,7 +71,7 @@ from tactile_graph_likelihood.single.any_pressure import (
 from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.element_terms import CONTRAST
 from tactile_graph_likelihood.single.maximise import Mode
-from tactile_graph_likelihood.single.model import EVERY, MORE, Likeliest, Model
+from tactile_graph_likelihood.single.model import EVERY, MORE, SECOND, Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, SPREADS, Noise
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.problem import LARGE_PAD
@@ -210,12 +211,31 @@ class AnyPad:
         whole = 1.0 if self.told.whole >= 1.0 else 0.0
         return changed(self._with(noise, *estimated), whole=whole)
 
-    def first(self, readings: Readings) -> tuple[Readings, Likeliest]:
-        """Return the even face's most likely outline by one attempt, and readings as it has them.
+    def first(self, readings: Readings) -> tuple[AnyPad, Readings, Likeliest]:
+        """Return the even face's most likely outline as it is first found, and its readings.
 
-        See `cleared`.
+        With the fits that found it; see `begun` and `cleared`.
         """
-        return self.cleared(readings, self._fit(EVEN).likeliest(readings))
+        its, even = self.begun(readings)
+        return its, *its.cleared(readings, even)
+
+    def begun(self, readings: Readings) -> tuple[AnyPad, Likeliest]:
+        """Return the even face's most likely outline by one attempt, and the fits that found it.
+
+        Where touched elements stand alone away from the others, a disc is first looked for near
+        one of these. If strays lie beyond that, the fits know of as many, and there were two more
+        attempts. Not so on pads of more than 1024 elements, nor of an outline with an angle, which
+        would rather be caught there.
+        """
+        model, large = self._fit(EVEN), readings.states.size > LARGE_PAD
+        some = None if large or self.told.kind != DISC else without_alone(readings)
+        if some is None or (rough := model.likeliest(some)).mode.height == -math.inf:
+            return self, model.likeliest(readings)
+        if not (strays := self.strays(readings, rough)):
+            return self, self.near(readings, self.told.point_of(rough))
+        its = self.knowing(strays)
+        model, near = its._fit(EVEN), its.near(readings, self.told.point_of(rough))
+        return its, among_strays(model, readings, model.likeliest(readings, near, attempts=SECOND))
 
     def cleared(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
         """Return readings free of a law's improbable bend, of foam and a hollow, and their outline.
@@ -254,18 +274,22 @@ class AnyPad:
         """Return the even face's most likely outline, as `Model.likeliest_near` finds it."""
         return self._fit(EVEN).likeliest_near(readings, point)
 
-    def searched(self, readings: Readings, near: Likeliest | None = None) -> Likeliest:
+    def searched(self, readings: Readings, near: Likeliest) -> Likeliest:
         """Return the same after all attempts that are worth their time.
 
         Where a quick answer will do, a first attempt that finds no more than ``near`` is the last.
         """
-        model = self._fit(EVEN)
-        if near is not None and not self.quick:
-            return model.likeliest(readings, near, attempts=EVERY)
-        even = model.likeliest(readings, near)
-        if near is not None and -math.inf < even.mode.height <= near.mode.height + SAME:
+        if not self.quick:
+            return self._fit(EVEN).likeliest(readings, near, attempts=EVERY)
+        even = self._fit(EVEN).likeliest(readings, near)
+        if -math.inf < even.mode.height <= near.mode.height + SAME:
             return even._replace(unsure=False)
-        return model.likeliest(readings, even, attempts=MORE) if even.unsure else even
+        return self.sought(readings, even)
+
+    def sought(self, readings: Readings, even: Likeliest) -> Likeliest:
+        """Return the same after more attempts, where the first ones left that open."""
+        more = even.unsure
+        return self._fit(EVEN).likeliest(readings, even, attempts=MORE) if more else even
 
     def strays(self, readings: Readings, even: Likeliest) -> float:
         """Return the share of strays beyond an outline, 0 unless it is far more than told."""
@@ -294,8 +318,8 @@ class AnyPad:
             If no outline of this kind is possible.
         """
         large, model = readings.states.size > LARGE_PAD, self._fit(EVEN)
-        if even.unsure and not large:
-            even = model.likeliest(readings, even, attempts=MORE)
+        if not large:
+            even = self.sought(readings, even)
         if readings.touched <= FEW:
             even = around_clump(model, readings, even)
         if even.mode.height == -math.inf:

@@ -60,7 +60,7 @@ Belief = tuple[Values, Values] | None
 
 NO_START = np.zeros(0)
 
-FIRST, MORE, EVERY = range(1), range(1, ATTEMPTS), range(ATTEMPTS)
+FIRST, SECOND, MORE, EVERY = range(1), range(1, 2), range(1, ATTEMPTS), range(ATTEMPTS)
 """Attempts at a most likely outline."""
 
 

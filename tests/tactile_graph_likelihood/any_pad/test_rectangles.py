@@ -97,4 +97,5 @@ def fall_left(image: Image) -> float:
     from tactile_graph_likelihood.any_pad.observed import observed
 
     readings = observed(image, step._pad, step._gap_cm)
-    return step._any_pad.first(readings)[1].fit.fall
+    _, _, even = step._any_pad.first(readings)
+    return even.fit.fall

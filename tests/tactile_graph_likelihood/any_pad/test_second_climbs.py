@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tactile_graph_likelihood.any_pad import localise
-from tactile_graph_likelihood.any_pad.clump import without_lone
+from tactile_graph_likelihood.any_pad.clump import without_alone, without_lone
 from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse, LocateRectangle
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.any_pad.second_climbs import grown_beyond
@@ -50,6 +50,25 @@ def test_an_element_between_broken_ones_is_not_lone():
     broken = [(i, j) for i in (4, 5, 6) for j in (4, 5, 6) if (i, j) != (5, 5)]
     assert without_lone(readings((5, 5), unknown=broken)) is None
     assert without_lone(readings((5, 5))).touched == 0
+
+
+def test_what_stands_alone_away_from_the_others_says_nothing_of_where_a_disc_is_looked_for_first():
+    found = without_alone(readings(*BLOCK, (0, 0), (9, 3), (9, 4), (8, 8)))
+    assert found.touched == len(BLOCK)
+    assert not found.shows[[0, 9, 9, 8], [0, 3, 4, 8]].any()
+
+
+@pytest.mark.parametrize(
+    "lone",
+    [
+        pytest.param([], id="none stands alone"),
+        pytest.param([(7, 7)], id="beside the others"),
+        pytest.param([(10, 1), (10, 2), (10, 3)], id="two neighbours"),
+        pytest.param([(0, i) for i in range(0, 12, 2)] + [(11, 0), (11, 2), (11, 4)], id="many"),
+    ],
+)
+def test_what_does_not_stand_alone_or_is_near_or_common_is_no_stray(lone):
+    assert without_alone(readings(*BLOCK, *lone)) is None
 
 
 @pytest.mark.parametrize(
@@ -104,9 +123,9 @@ def searched(kind, shape, pads):
         bench = Bench(KINDS[kind], np.random.default_rng(seed))
         for frame in bench.frames(3, "rectangle" if shape == "rectangle" else "disc"):
             true = frame.truth[0].shape
-            readings, even = step._any_pad.first(observed(frame.image, step._pad, None))
-            tops = step._any_pad.completed(readings, even)
-            x, y = step._any_pad.around(readings, tops).mean[:2]
+            fits, readings, even = step._any_pad.first(observed(frame.image, step._pad, None))
+            tops = fits.completed(readings, even)
+            x, y = fits.around(readings, tops).mean[:2]
             rows.append((tops[EVEN].evidence, math.hypot(x - true.x_cm, y - true.y_cm)))
     return np.array(rows).T
 
@@ -128,6 +147,33 @@ def test_what_the_edge_cuts_off_is_looked_for_beyond_it(
     assert (evidence > evidence_before + MISSED).sum() >= least
     assert (evidence > evidence_before - MISSED).all()
     assert off.mean() < ratio * off_before.mean()
+
+
+@many
+def test_a_disc_among_strays_is_begun_at_knowing_of_them_and_found_in_fewer_climbs():
+    any_pad, known, likelier = STEPS["disc"]._any_pad, [], []
+    for frame in Bench(KINDS["strays 4 %"], np.random.default_rng(2)).frames(24, "disc"):
+        seen = observed(frame.image, STEPS["disc"]._pad, None)
+        fits, even = any_pad.begun(seen)
+        known.append(fits.told.noise.strays)
+        plain = fits._fit(EVEN).likeliest(seen)
+        likelier.append(even.mode.height - plain.mode.height)
+    assert np.max(known) == pytest.approx(0.04, abs=0.03)
+    assert np.mean(np.array(known) > any_pad.told.noise.strays) > 0.6
+    assert min(likelier) > -MISSED
+    assert max(likelier) > MISSED
+
+
+@many
+@pytest.mark.parametrize("kind", ["noise 0", "turn-on 40 g", "voids 0.4"])
+def test_without_strays_a_disc_is_begun_at_as_the_readings_have_it(kind):
+    any_pad, same = STEPS["disc"]._any_pad, []
+    for frame in Bench(KINDS[kind], np.random.default_rng(2)).frames(24, "disc"):
+        seen = observed(frame.image, STEPS["disc"]._pad, None)
+        fits, even = any_pad.begun(seen)
+        plain = any_pad._fit(EVEN).likeliest(seen)
+        same.append(fits is any_pad and even.mode.height > plain.mode.height - 0.5)
+    assert sum(same) >= 23
 
 
 @many
