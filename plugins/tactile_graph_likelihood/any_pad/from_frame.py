@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph_likelihood.any_pad.turn_on import (
+    chance_of_an_even_pad,
     contrast_by,
     edge_of,
     log_density_of_gains,
@@ -24,7 +25,7 @@ LAW = 0.35
 
 LAWLESS, LAWLESS_STD = 0.25, 0.45
 """The same of readings that no law is told of, where they scatter less than told, and the standard
-deviation of that share: an even pad, or one whose readings go with a root of the load."""
+deviation of that share: a pad that is more even, or whose readings go with a root of the load."""
 
 EVENED, EVENED_STD = -0.3, 0.17
 """What foam, which spreads loads that are uneven, adds to ln sigma, and its deviation."""
@@ -110,13 +111,16 @@ def contrast_of(told: Noise, log_sigma: float, readings: Readings, law: float = 
     exponent is another. Where readings begin tells which (`contrast_by`), if that is seen: by the
     told law or, as far as its bend is improbable, by that without. Readings that no law is told of
     and that scatter less may be those of an even pad, or go with a root of the load: nobody knows.
+    The less they scatter, the more probable is a pad that is quite even.
     """
     if law <= 0.0:
         return AS_LOADS
     other = math.log(_freed(log_sigma, readings.touched) / told.sigma)
     turn_on = readings.turn_on
+    law *= 1.0 - chance_of_an_even_pad(other, readings.touched)
     if turn_on is None and other < 0.0:
-        return Contrast(1.0 + LAWLESS * other, math.hypot(SPREADS[CONTRAST], LAWLESS_STD * other))
+        share = law / LAW * LAWLESS
+        return Contrast(1.0 + share * other, math.hypot(SPREADS[CONTRAST], LAWLESS_STD * other))
     begin = readings.through_foam or readings
     if (edge := edge_of(begin)) is not None:
         return Contrast(contrast_by(other, edge, readings.touched))

@@ -21,6 +21,7 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     strays_beyond,
     variance_inflation,
 )
+from tactile_graph_likelihood.any_pad.gap import sized
 from tactile_graph_likelihood.any_pad.hollow import without_hollow
 from tactile_graph_likelihood.any_pad.learned_pad import unevenness_left
 from tactile_graph_likelihood.any_pad.left_open import (
@@ -54,6 +55,7 @@ from tactile_graph_likelihood.any_pad.turn_on import (
     straightened,
     unbent,
 )
+from tactile_graph_likelihood.any_pad.unheld import unheld
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, sizes, unknowns
 from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single.any_pressure import (
@@ -238,12 +240,16 @@ class AnyPad:
         return its, among_strays(model, readings, model.likeliest(readings, near, attempts=SECOND))
 
     def cleared(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
-        """Return readings free of a law's improbable bend, of foam and a hollow, and their outline.
+        """Return readings free of a limit and a law's improbable bend, of foam and a hollow.
 
-        Only on pads of up to 1024 elements.
+        With their outline, and on elements as large as they tell. Only on pads of up to 1024
+        elements.
         """
         if readings.states.size > LARGE_PAD or even.mode.height == -math.inf:
             return readings, even
+        model = self._fit(EVEN)
+        if (free := unheld(model, readings, even)) is not None:
+            readings, even = free
         if (bare := unbent(readings)) is not None:
             readings, even = self._by_law(readings, even, *bare)
         if self.foam_cm > 0.0 or asked_by([even.fit], [FOAM], self._faint):
@@ -252,7 +258,9 @@ class AnyPad:
                 readings, even = its, self.near(its, self.told.point_of(even))
         p = self.told.point_of(even)
         rim = without_hollow(self.told.kind, readings, p, float(p[-1]))
-        return (readings, even) if rim is None else (rim, self.near(rim, p))
+        if rim is not None:
+            readings, even = rim, self.near(rim, p)
+        return (readings, even) if readings.through_foam else sized(model, readings, even)
 
     def _by_law(
         self, readings: Readings, even: Likeliest, straight: Readings, denser: float
@@ -388,7 +396,7 @@ class AnyPad:
         total = sum(shares.values())
         pressed = sum(share * self._wider(part) for part, share in shares.items()) / total
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
-        hidden = self._hidden(its.alike, readings, len(tops))
+        hidden = self._hidden(its.alike, readings, len(tops)) + readings.length_std_cm**2
         whole = self._on_any_pad(its, readings, evidence, pressed, hidden)
         if is_row(readings):
             whole = within(whole, *self.told.range_cm(readings))

@@ -23,11 +23,18 @@ from tactile_graph_likelihood.any_pad.shown import (
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import OFF, ON, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.problem import LARGE_PAD
-from tactile_graph_likelihood.single.readings import Readings, TurnOn, grid_of
+from tactile_graph_likelihood.single.readings import Gap, Readings, TurnOn, grid_of
 from tactile_graph_pads.pad import Pad
 
 SAME = 0.02
 """Of a pitch: by how much it may differ from the pad's and be taken for it."""
+
+SHOWN = 4.0
+"""Deviations of the noise from which on a reading shows."""
+
+GAP, GAP_STD, TOLD_GAP_STD = 0.12, 0.12, 0.08
+"""Of a pitch: what is believed of the gap of elements that nothing is told of, how far it may be
+off, and how far one may be off that is told of a pad of that pitch."""
 
 NEARLY = 0.03
 """Of a cell's longer side, by which the other may be shorter: sizes come out wrong by half of
@@ -81,8 +88,10 @@ def observed(
     """
     across, down = image.pitch_cm
     require_square(image, NEARLY)
+    gap = None
     if gap_cm is None:
-        gap_cm = pad.geometry.gap_cm if abs(across - pad.geometry.pitch_cm) < SAME * across else 0.0
+        gap = gap_by(pad, image.pitch_cm)
+        gap_cm = gap.middle_cm if gap.is_told else 0.0
     grid = grid_of(image, gap_cm)
     if pad.learned is None:
         image = without_dead(image)
@@ -108,11 +117,33 @@ def observed(
     logs_seen = np.log(seen)
     ordered = logs_seen.copy()
     ordered.sort()
-    edge, logs, states = told_of_elements.direct(
+    (edge, ceiling), logs, states = told_of_elements.direct(
         logs_seen, ordered, np.log(floor), shows, known, told
     )
     found = Readings(grid, logs, states, seen.size, down / across, edge, turn_on)
-    return uniform(found) if states.size > LARGE_PAD else found
+    if states.size > LARGE_PAD:
+        return uniform(found)
+    if ceiling < math.inf:
+        unheld = logs.copy()
+        unheld[found.shows] = logs_seen
+        found = found._replace(unheld=unheld, noise=float(np.median(least_loads)) / SHOWN)
+    return found._replace(gap=gap)
+
+
+def gap_by(pad: Pad, pitch_cm: tuple[float, float]) -> Gap:
+    """Return what is believed of the gap of elements of some pitch, by a pad that may be another.
+
+    Parameters
+    ----------
+    pad : Pad
+    pitch_cm : (float, float)
+        Across and down.
+    """
+    across, down = pitch_cm
+    pitch = math.sqrt(across * down)
+    if abs(across - pad.geometry.pitch_cm) < SAME * across:
+        return Gap(pad.geometry.gap_cm, TOLD_GAP_STD * pitch, True)
+    return Gap(GAP * pitch, GAP_STD * pitch, False)
 
 
 def _both(known: NDArray[np.bool_], also: NDArray[np.bool_]) -> NDArray[np.bool_]:

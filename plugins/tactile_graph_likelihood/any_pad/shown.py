@@ -169,8 +169,8 @@ def ceiling_of(ordered: Values) -> float:
 @compiled_later
 def told_of_elements(
     seen: Values, ordered: Values, floor: Values, shows: Cells, known: Cells, told: float
-) -> tuple[float, Values, States]:
-    """Return the least load that shows, and logarithms and states as `Readings` has them.
+) -> tuple[tuple[float, float], Values, States]:
+    """Return where loads begin to show and end, and logarithms and states as `Readings` has them.
 
     Parameters
     ----------
@@ -198,4 +198,4 @@ def told_of_elements(
             else:
                 states[i, j] = UNDER if here else UNKNOWN
                 logs[i, j] = max(floor[min(i, last_row), min(j, last_column)], edge)
-    return edge, logs, states
+    return (edge, ceiling), logs, states

@@ -33,6 +33,10 @@ OTHER = (0.3, 0.2, 0.2)
 AS_IS, AS_ELSE = (0.07, 0.07, 0.1), (0.3, 0.4, 1.5)
 """Deviations of the logarithms of exponent, sigma and turn-on as told, and of others."""
 
+EVEN, EVEN_STD = 0.1, 2.0
+"""Probability that a pad is quite even, and the deviation of the logarithm of sigma then: elements
+of calibrated and capacitive pads vary by a hundredth to a tenth."""
+
 
 LEAST_REACH = 0.1
 """Of the told distance of the turn-on below the load by which the law is known."""
@@ -211,6 +215,27 @@ def mean_over(
     return mean / total if total > 0.0 else 0.0
 
 
+def chance_of_an_even_pad(scatter: float, touched: int) -> float:
+    """Return the probability that a pad is quite even by how readings scatter alone.
+
+    Parameters
+    ----------
+    scatter : float
+        Ln of sigma over the told one.
+    touched : int
+        Readings that tell sigma.
+    """
+    even = usual = 0.0
+    for weight, exponent, gains, _ in WORLDS.tolist():
+        variance = exponent + gains + 0.5 / max(touched, 1)
+        chance = weight * math.exp(-0.5 * scatter * scatter / variance) / math.sqrt(variance)
+        if gains >= EVEN_STD**2:
+            even += chance
+        else:
+            usual += chance
+    return even / (even + usual)
+
+
 def log_density_of_gains(log_sigma: float, touched: int, beside: float = 0.0) -> float:
     """Return the log density of a fit's ln sigma over the told one, by what is told of gains.
 
@@ -230,13 +255,16 @@ def log_density_of_gains(log_sigma: float, touched: int, beside: float = 0.0) ->
 
 
 def _worlds() -> Values:
-    """Return probability and variances of what is as told and what is not, in all ways, (8, 4)."""
-    found = []
-    for other in product((False, True), repeat=3):
-        weight = math.prod(p if its else 1.0 - p for p, its in zip(OTHER, other, strict=True))
-        stds = [AS_ELSE[k] if its else AS_IS[k] for k, its in enumerate(other)]
-        found.append((weight, stds[0] ** 2, stds[1] ** 2, stds[2] ** 2))
-    return np.array(found)
+    """Return probability and variances of what is as told and what is not, in all ways, (12, 4)."""
+    exponents, gains, begins = (
+        [(1.0 - p, as_is), (p, as_else)]
+        for p, as_is, as_else in zip(OTHER, AS_IS, AS_ELSE, strict=True)
+    )
+    gains = [((1.0 - EVEN) * p, std) for p, std in gains] + [(EVEN, EVEN_STD)]
+    return np.array([
+        (math.prod(p for p, _ in ways), *(std * std for _, std in ways))
+        for ways in product(exponents, gains, begins)
+    ])  # fmt: skip
 
 
 WORLDS = _worlds()

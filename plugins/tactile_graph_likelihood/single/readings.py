@@ -50,6 +50,21 @@ class TurnOn(NamedTuple):
     chance: float = 1.0
 
 
+class Gap(NamedTuple):
+    """What is believed of the distance of neighbouring elements' edges.
+
+    Parameters
+    ----------
+    middle_cm, std_cm : float
+    is_told : bool
+        Whether a pad of this pitch is told of, whose gap it is.
+    """
+
+    middle_cm: float
+    std_cm: float
+    is_told: bool
+
+
 class Readings(NamedTuple):
     """What an image says, and where its elements lie.
 
@@ -58,7 +73,11 @@ class Readings(NamedTuple):
     height of a cell over its width, where it is nearly 1 and was taken for that, cells being as
     large as they are; ``least_log`` the logarithm of the least load that shows, where the readings
     themselves say it; ``turn_on`` what is told of the law there, where readings are by one;
-    ``through_foam`` what was read before foam was undone.
+    ``through_foam`` what was read before foam was undone; ``unheld`` logarithms as they were read,
+    where some are held to the load at which readings end, and ``noise`` the deviation of a load
+    there; ``gap`` what is believed of elements'
+    gap, where that was not said; ``length_std_cm`` how uncertain it leaves the lengths of an
+    outline.
     """
 
     grid: Values
@@ -69,6 +88,10 @@ class Readings(NamedTuple):
     least_log: float | None = None
     turn_on: TurnOn | None = None
     through_foam: Readings | None = None
+    unheld: Values | None = None
+    noise: float = 0.0
+    gap: Gap | None = None
+    length_std_cm: float = 0.0
 
     @property
     def size_cm(self) -> tuple[float, float]:

@@ -88,7 +88,7 @@ def test_only_known_loads_are_shown_in_the_order_of_their_elements():
 @pytest.mark.parametrize("seed", range(6))
 def test_states_say_what_shows_what_could_have_and_what_reads_the_most(seed):
     seen, ordered, floor, shows, known, turn_on = told(np.random.default_rng(seed), (16, 16), 0.4)
-    edge, logs, states = plainly(told_of_elements)(seen, ordered, floor, shows, known, turn_on)
+    (edge, _), logs, states = plainly(told_of_elements)(seen, ordered, floor, shows, known, turn_on)
     on = shows & known
     assert edge <= ordered[0]
     np.testing.assert_array_equal(states == UNKNOWN, ~known)

@@ -1,0 +1,130 @@
+"""How large elements are, by how readings fall off over an outline's rim."""
+
+from __future__ import annotations
+
+import math
+
+from tactile_graph_likelihood.single.model import Likeliest, Model
+from tactile_graph_likelihood.single.readings import Gap, Readings, is_row
+
+STEP = 0.1
+"""Of a pitch: by how much gaps differ that are tried."""
+
+MOST = 0.5
+"""Of a pitch: no gap is wider."""
+
+SURE = 0.04
+"""Of a pitch: no gap is known better."""
+
+SLOPE = 0.4
+"""By how much a radius or half a side grows with the gap, if all else is as it is."""
+
+EVEN = 0.25
+"""Sigma of a fit up to which readings tell the gap of a pad whose gap was told."""
+
+
+class Tried:
+    """Outlines on elements of other gaps, each climbed to once.
+
+    Parameters
+    ----------
+    model : Model
+    readings : Readings
+    even : Likeliest
+        The outline on elements as they were taken to be.
+    guess : Gap
+    """
+
+    def __init__(self, model: Model, readings: Readings, even: Likeliest, guess: Gap) -> None:
+        self._model, self._readings, self._guess = model, readings, guess
+        self._pitch = float(readings.grid[2])
+        self._told = self._pitch - float(readings.grid[3])
+        self._found: dict[float, tuple[Readings, Likeliest]] = {0.0: (readings, even)}
+
+    def gap_cm(self, steps: float) -> float:
+        """Return the gap so many steps above the one that was taken."""
+        return self._told + steps * STEP * self._pitch
+
+    def at(self, steps: float) -> tuple[Readings, Likeliest]:
+        """Return readings and outline on elements whose gap is so many steps above that."""
+        if steps not in self._found:
+            wider, grid = self.gap_cm(steps) - self._told, self._readings.grid.copy()
+            grid[:2] += 0.5 * wider
+            grid[3] -= wider
+            its = self._readings._replace(grid=grid)
+            _, near = self._found[min(self._found, key=lambda known: abs(known - steps))]
+            self._found[steps] = its, self._model.likeliest_near(its, self._model.point_of(near))
+        return self._found[steps]
+
+    def log_chance(self, steps: float) -> float:
+        """Return the log posterior there, with what is believed of gaps; -inf where none can be."""
+        gap = self.gap_cm(steps)
+        if not -1e-9 <= gap <= MOST * self._pitch:
+            return -math.inf
+        off = (gap - self._guess.middle_cm) / self._guess.std_cm
+        return self.at(steps)[1].mode.height - 0.5 * off * off
+
+    def best(self) -> int:
+        """Return the likeliest gap in whole steps: no step to either side is likelier."""
+        best = 0
+        for way in (1, -1):
+            while self.log_chance(best + way) > self.log_chance(best):
+                best += way
+            if best:
+                break
+        return best
+
+    def around(self, best: int) -> tuple[float, float]:
+        """Return where the likeliest gap is, in steps, and its deviation in cm."""
+        here, below, above = (self.log_chance(best + k) for k in (0, -1, 1))
+        steps, std = float(best), math.inf
+        if below > -math.inf and above > -math.inf:
+            bend = 2.0 * here - below - above
+            steps += 0.5 * (above - below) / bend if bend > 0.0 else 0.0
+            std = 1.0 / math.sqrt(bend) if bend > 0.0 else math.inf
+        elif 0.0 < (drop := here - max(below, above)) < math.inf:
+            std = 1.0 / math.sqrt(2.0 * drop)
+        std_cm = max(std * STEP, SURE) * self._pitch
+        return steps, min(std_cm, self._guess.std_cm)
+
+    def slope(self, best: int) -> float:
+        """Return by how much the outline's first size grows with the gap."""
+        steps = [k for k in (best - 1, best, best + 1) if self.log_chance(k) > -math.inf]
+        first, last = (float(self.at(k)[1].mode.p[2]) for k in (steps[0], steps[-1]))
+        return (last - first) / (max(len(steps) - 1, 1) * STEP * self._pitch)
+
+
+def sized(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
+    """Return readings on elements as large as they tell, and the outline on them.
+
+    Parameters
+    ----------
+    model : Model
+        Of an even face.
+    readings : Readings
+    even : Likeliest
+
+    Returns
+    -------
+    Readings
+        With the deviation of lengths that is left, as nobody knows the gap better. The same on a
+        single row, where the gap was said, and where it was told of the pad and readings scatter
+        too much to tell another; the same but for that deviation where a limit holds readings, so
+        that the rim tells little.
+    Likeliest
+    """
+    guess = readings.gap
+    if guess is None or even.mode.height == -math.inf or is_row(readings):
+        return readings, even
+    if guess.is_told and math.exp(even.mode.p[-2]) > EVEN:
+        return readings, even
+    if readings.unheld is not None:
+        std_cm = 0.0 if guess.is_told else guess.std_cm
+        return readings._replace(gap=None, length_std_cm=SLOPE * std_cm), even
+    tried = Tried(model, readings, even, guess)
+    best = tried.best()
+    steps, std_cm = tried.around(best)
+    found, its = tried.at(steps)
+    if its.mode.height == -math.inf:
+        return readings, even
+    return found._replace(gap=None, length_std_cm=abs(tried.slope(best)) * std_cm), its
