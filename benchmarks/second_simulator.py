@@ -30,6 +30,8 @@ BIAS_OHM = 33e3
 SOWN = 20
 """Points along each side of an element; a disc's area comes out within a part in a thousand."""
 STUCK_OHM = 2e3
+COUNTS = 4095.0
+KPA_CM2_PER_G = 0.0980665
 DISCS = ((1860.0, 6.8), (6360.0, 5.1), (6810.0, 7.7))
 """Weight in grams and radius in cm of the discs of table 4.2."""
 RECTANGLES = ((3000.0, 16.0, 7.0), (1500.0, 14.0, 3.0))
@@ -85,6 +87,11 @@ class Kind:
     rectangles: tuple[tuple[float, float, float], ...] = RECTANGLES
     over_edge: bool = False
     """Whether objects may lie partly beyond the pad, their centre on it."""
+    reads: str = "volt"
+    """Quantity that is read: volts of the divider, those in counts of 12 bits, or, of calibrated
+    pads, grams or kilopascals."""
+    noise_g: float = 0.0
+    """Standard deviation of a reading of a calibrated pad, rounded to as much and cut off at 0."""
 
     @property
     def pitch_cm(self) -> float:
@@ -128,9 +135,10 @@ class Bench:
     def frame(self, objects: Sequence[TrueObject], index: int = 0) -> Frame:
         """Return a frame of discs and rectangles that lie on the pad all at once."""
         load_g = sum(self._load_g(it.shape, it.weight_g) for it in objects)
-        volts = self._read(np.asarray(load_g))
-        pitch, truth = self.kind.pitch_cm, tuple(objects)
-        return Frame.of(volts, pitch, self._origin_cm, "volt", index=index, truth=truth)
+        kind, load = self.kind, np.asarray(load_g)
+        volts = self._calibrated(load) if kind.noise_g else self._read(load)
+        pitch, truth = kind.pitch_cm, tuple(objects)
+        return Frame.of(volts, pitch, self._origin_cm, kind.reads, index=index, truth=truth)
 
     @property
     def _origin_cm(self) -> tuple[float, float]:
@@ -194,7 +202,17 @@ class Bench:
         conductance_s[self.stuck] = 1.0 / STUCK_OHM
         volts = SUPPLY_V * conductance_s / (1.0 / BIAS_OHM + conductance_s.sum(axis=0))
         volts += self.zero_v + kind.noise_v * self.rng.standard_normal(volts.shape)
+        if kind.reads == "counts":
+            return np.clip(np.round(volts / SUPPLY_V * COUNTS), 0.0, COUNTS)
         return np.round(volts / kind.step_v) * kind.step_v if kind.step_v else volts
+
+    def _calibrated(self, load_g: Values) -> Values:
+        """Return grams or kilopascals as read: with noise, in steps, none below 0."""
+        kind = self.kind
+        felt = np.minimum(load_g, kind.saturation_g)
+        felt = felt + kind.noise_g * self.rng.standard_normal(felt.shape)
+        felt = np.maximum(np.round(felt / kind.noise_g) * kind.noise_g, 0.0)
+        return felt * (KPA_CM2_PER_G / kind.pitch_cm**2) if kind.reads == "kilopascal" else felt
 
 
 def blurred(values: Values, width: float, unit_variance: bool = False) -> Values:
@@ -291,6 +309,13 @@ FINGERS = replace(KINDS["small objects"], strays=0.01)
 
 FOAM = KINDS["foam 0.6 cells"]
 
+EVEN = replace(
+    BASE, element_cm=0.716, sigma=0.03, voids=0.0, noise_g=0.5, reads="kilopascal",
+    discs=((580.0, 2.5), (1500.0, 4.0), (2800.0, 5.5)),
+    rectangles=((1900.0, 9.0, 7.0), (760.0, 9.5, 2.6)),
+)  # fmt: skip
+"""A calibrated pad of the pitch 1.016 cm, its elements nearly alike."""
+
 MORE_KINDS: dict[str, Kind] = {
     "fingertips and strays": FINGERS,
     "light fingertips and strays": replace(FINGERS, discs=((150.0, 1.2), (200.0, 1.5))),
@@ -327,5 +352,28 @@ MORE_KINDS: dict[str, Kind] = {
     "foam, strays 1 %": replace(FOAM, strays=0.01),
     "foam with tails": replace(BASE, foam_cells=0.8, foam=with_tails),
     "to neighbours": replace(BASE, foam_cells=0.15, foam=to_neighbours),
+    "even": EVEN,
+    "even, gap 0": replace(EVEN, element_cm=1.016, gap_cm=0.0),
+    "even, gap 0.12 cm": replace(EVEN, element_cm=0.896, gap_cm=0.12),
+    "even to 1 %": replace(EVEN, sigma=0.01),
+    "even to 10 %": replace(EVEN, sigma=0.1),
+    "even, grams": replace(EVEN, reads="gram"),
+    "even, pitch 1.3 cm": replace(EVEN, element_cm=1.0),
+    "even, little noise": replace(EVEN, noise_g=0.05),
+    "even, saturated": replace(EVEN, saturation_g=6.0, noise_g=0.05),
+    "even, volts": replace(BASE, sigma=0.03, voids=0.0),
+    "calibrated": replace(EVEN, sigma=0.5, voids=0.15),
+    "calibrated, gap 0": replace(EVEN, sigma=0.5, voids=0.15, element_cm=1.016, gap_cm=0.0),
+    "counts": replace(BASE, reads="counts", sigma=0.3, turn_on_g=5.0),
+    "counts, gap 0.12 cm": replace(
+        BASE,
+        reads="counts",
+        sigma=0.3,
+        turn_on_g=5.0,
+        element_cm=0.896,
+        gap_cm=0.12,
+        discs=EVEN.discs,
+        rectangles=EVEN.rectangles,
+    ),
 }
 """Kinds that are looked at by name only."""

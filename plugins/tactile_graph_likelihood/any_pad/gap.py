@@ -16,8 +16,9 @@ MOST = 0.5
 SURE = 0.04
 """Of a pitch: no gap is known better."""
 
-SLOPE = 0.4
-"""By how much a radius or half a side grows with the gap, if all else is as it is."""
+SLOPE = 0.8
+"""By how much a radius or half a side grows with the gap where a limit holds most readings: then
+what shows at all tells where the rim is."""
 
 EVEN = 0.25
 """Sigma of a fit up to which readings tell the gap of a pad whose gap was told."""
@@ -119,12 +120,16 @@ def sized(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings, 
     if guess.is_told and math.exp(even.mode.p[-2]) > EVEN:
         return readings, even
     if readings.unheld is not None:
-        std_cm = 0.0 if guess.is_told else guess.std_cm
-        return readings._replace(gap=None, length_std_cm=SLOPE * std_cm), even
+        return _known_to(readings, 0.0 if guess.is_told else SLOPE * guess.std_cm), even
     tried = Tried(model, readings, even, guess)
     best = tried.best()
     steps, std_cm = tried.around(best)
     found, its = tried.at(steps)
     if its.mode.height == -math.inf:
         return readings, even
-    return found._replace(gap=None, length_std_cm=abs(tried.slope(best)) * std_cm), its
+    return _known_to(found, tried.slope(best) * std_cm), its
+
+
+def _known_to(readings: Readings, std_cm: float) -> Readings:
+    """Return readings whose gap leaves lengths so uncertain, beside what did."""
+    return readings._replace(gap=None, length_std_cm=math.hypot(readings.length_std_cm, std_cm))

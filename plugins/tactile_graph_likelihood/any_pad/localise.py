@@ -248,8 +248,7 @@ class AnyPad:
         if readings.states.size > LARGE_PAD or even.mode.height == -math.inf:
             return readings, even
         model = self._fit(EVEN)
-        if (free := unheld(model, readings, even)) is not None:
-            readings, even = free
+        readings, even = unheld(model, readings, even)
         if (bare := unbent(readings)) is not None:
             readings, even = self._by_law(readings, even, *bare)
         if self.foam_cm > 0.0 or asked_by([even.fit], [FOAM], self._faint):

@@ -29,6 +29,10 @@ from tactile_graph_pads.pad import Pad
 SAME = 0.02
 """Of a pitch: by how much it may differ from the pad's and be taken for it."""
 
+UNSCALED, UNSCALED_STD = ("counts", "raw"), 0.05
+"""Quantities that no scale is told of, and how uncertain that leaves an outline's lengths, over the
+pitch: where a circuit bends readings at their least, the rim shows too little."""
+
 SHOWN = 4.0
 """Deviations of the noise from which on a reading shows."""
 
@@ -127,7 +131,8 @@ def observed(
         unheld = logs.copy()
         unheld[found.shows] = logs_seen
         found = found._replace(unheld=unheld, noise=float(np.median(least_loads)) / SHOWN)
-    return found._replace(gap=gap)
+    unsure_cm = UNSCALED_STD * float(grid[2]) if image.quantity in UNSCALED else 0.0
+    return found._replace(gap=gap, length_std_cm=unsure_cm)
 
 
 def gap_by(pad: Pad, pitch_cm: tuple[float, float]) -> Gap:

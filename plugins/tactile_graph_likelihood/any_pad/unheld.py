@@ -31,13 +31,15 @@ COARSE = 0.03
 STRANGE = 1.6
 """Deviations by which readings under the rim are off that no even face explains."""
 
-FAR = 1.0
+FAR = 2.0
 """Nats for each of the alike readings by which an even face that is worth a second look may
 explain readings worse at first, while the gap is as told."""
 
 
-def unheld(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest] | None:
+def unheld(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
     """Return readings that no limit holds, and the outline by them, where they are rather that.
+
+    Otherwise the same.
 
     Parameters
     ----------
@@ -49,8 +51,7 @@ def unheld(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings,
 
     Returns
     -------
-    (Readings, Likeliest) or None
-        None where no readings are alike at the top, or a limit explains these better.
+    (Readings, Likeliest)
 
     Notes
     -----
@@ -60,7 +61,7 @@ def unheld(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings,
     the rim an even pad's readings scatter as those of its face do, and by the noise.
     """
     if readings.unheld is None or even.mode.height == -math.inf:
-        return None
+        return readings, even
     over = readings.states == OVER
     logs, n = readings.unheld[over], int(np.count_nonzero(over))
     free = readings._replace(
@@ -72,10 +73,10 @@ def unheld(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings,
     )
     its = model.likeliest_near(free, model.point_of(even))
     if its.mode.height < held - FAR * n or readings.touched - n < RIM * _on_rim(model, free, its):
-        return None
+        return readings, even
     free, its = sized(model, free, its)
     if its.mode.height <= held or _strangeness(model, free, its, readings.noise) > STRANGE:
-        return None
+        return readings, even
     return free, its
 
 
