@@ -28,7 +28,7 @@ FEWEST = 4
 COARSE = 0.03
 """Of ln load: no coverage is known better."""
 
-STRANGE = 1.6
+STRANGE = 2.0
 """Deviations by which readings under the rim are off that no even face explains."""
 
 FAR = 2.0
