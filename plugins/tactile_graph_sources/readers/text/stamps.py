@@ -12,6 +12,7 @@ from tactile_graph_sources.readers.words.dialect import floats
 from tactile_graph_sources.readers.words.moments import clock_s
 from tactile_graph_sources.readers.words.own_number import number_in
 from tactile_graph_sources.readers.words.running_clock import RunningClock
+from tactile_graph_sources.readers.words.short_counter import ShortCounter
 
 _COUNTS = 1 << 32
 
@@ -30,7 +31,7 @@ class Stamps:
         given, colon_s = layout.time_format, layout.colon_s
         self._clock = RunningClock(str(reading.path), reading.assume, given, colon_s)
         self._start = reading.start
-        self._counter = DeviceClock(1.0, _COUNTS)
+        self._counter, self._short = DeviceClock(1.0, _COUNTS), ShortCounter()
 
     def of(self, fields: Sequence[str]) -> tuple[float | None, float | None]:
         """Return the number and the time (s) of a frame; None where there is none.
@@ -66,8 +67,10 @@ class Stamps:
         return time_s
 
     def _run_on(self, time: float) -> float:
-        """Return a time in counts as if micros() and the like did not begin anew at 2^32."""
-        return self._counter.run_on(time) if self._layout.time_factor <= 1e-3 else time
+        """Return a time in counts as if micros() and the like did not begin anew."""
+        if self._layout.time_factor > 1e-3:
+            return time
+        return self._short.run_on(self._counter.run_on(time))
 
     def _on_from_first(self, text: str) -> float:
         at = self._clock.read(text)
