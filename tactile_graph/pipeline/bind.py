@@ -110,14 +110,15 @@ def _bind(
 
 
 def _misfit(signature: Signature, port: Port, text: str, kind: Any, wanted: Any, item: Any) -> str:
-    hint = ""
-    if port.item is not None and fit(Ref("x"), kind, port.item) is not None:
+    hint, fields = "", []
+    if len(getattr(kind, "_fields", ())) > 0:
+        fields = [n for n, k in public_fields(kind).items() if fit(Ref("x"), k, wanted)]
+    if fields:  # before a list of nodes, into which a record fits where items may be anything
+        hint = f"; try {text}.{fields[0]}"
+    elif port.item is not None and fit(Ref("x"), kind, port.item) is not None:
         hint = f"; as a list of nodes it is [{text}]"
     elif item is not None and fit(Ref("x"), item, wanted) is not None:
         hint = "; add 'each: true' to run it for each item"
-    elif len(getattr(kind, "_fields", ())) > 0:
-        fields = [n for n, k in public_fields(kind).items() if fit(Ref("x"), k, wanted)]
-        hint = f"; try {text}.{fields[0]}" if fields else ""
     return (
         f": {text!r} is {_article(type_name(kind))}, but port {port.name!r} of step "
         f"{signature.name!r} takes {_article(type_name(wanted))}{hint}"

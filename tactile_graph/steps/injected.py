@@ -18,8 +18,9 @@ class _Gap:
 
 
 TimeGap = Annotated[float | None, _Gap()]
-"""Seconds since the step last ran; None at its first frame, and where this frame or that of the
-last run has no time."""
+"""Seconds since the step last ran; None at its first frame, and where no times say. For a frame
+without a time of its own it is what the frames before lie apart; that of the next one with a time
+makes up for it."""
 
 
 def is_time_gap(metadata: tuple[object, ...]) -> bool:

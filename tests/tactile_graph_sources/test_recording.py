@@ -485,3 +485,17 @@ def test_recordings_of_one_frame_are_told_of_where_steps_keep_state(tmp_path: Pa
     names = [str(write(tmp_path, flat_text(blobs(1, 8, 8)), f"f{i}.csv")) for i in (1, 2)]
     got = CliRunner().invoke(cli, ["run", str(tmp_path / "tared.yaml"), *names])
     assert "began anew with each of 2 recordings of one frame" in " ".join(got.output.split())
+
+
+@pytest.mark.parametrize("pitch", [np.array(1.016), np.array([1.016]), np.array([1.016, 1.016])])
+def test_one_pitch_in_an_npz_of_ours_is_that_of_square_cells(
+    tmp_path: Path, pitch: np.ndarray
+) -> None:
+    frames, _ = frames_of(write(tmp_path, npz_bytes(values=SMALL, pitch_cm=pitch), "a.npz"))
+    assert frames[0].image.pitch_cm == (1.016, 1.016)
+
+
+def test_of_three_pitches_it_is_said_what_two_would_be(tmp_path: Path) -> None:
+    path = write(tmp_path, npz_bytes(values=SMALL, pitch_cm=np.ones(3)), "a.npz")
+    with pytest.raises(DataError, match=r"expected shape \(2,\), along x and along y"):
+        frames_of(path)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, closing
 from itertools import islice
 from pathlib import Path
@@ -26,13 +26,8 @@ OFFERS = "recording_writers"
 
 
 @click.command()
-@click.argument(
-    "paths",
-    metavar="[RECORDING]... TARGET",
-    nargs=-1,
-    required=True,
-    type=click.Path(path_type=Path),
-)
+@click.argument("recordings", metavar="[RECORDING]...", nargs=-1, type=click.Path(path_type=Path))
+@click.argument("target", type=click.Path(path_type=Path))
 @click.option(
     "--source",
     metavar="STEP",
@@ -65,13 +60,16 @@ OFFERS = "recording_writers"
     help="What truly lay on the pad: a table of one object a line, or JSON; it replaces what the "
     "recording says of that.",
 )
+@click.option("--overwrite", is_flag=True, help="Write over a file that is there.")
 def convert(
-    paths: tuple[Path, ...],
+    recordings: tuple[Path, ...],
+    target: Path,
     source: str | None,
     settings: tuple[str, ...],
     seed: int,
     n_frames: int | None,
     truth: Path | None,
+    overwrite: bool,
     **told: Any,
 ) -> None:
     """Convert recordings, or the frames of a source, to TARGET: .zarr, .npz or .csv by its name.
@@ -84,8 +82,7 @@ def convert(
     from tactile_graph.errors import UsageError
     from tactile_graph.steps.injected import Report
 
-    *recordings, target = paths
-    ending = _check(recordings, target, source)
+    ending = _check(recordings, target, source, overwrite)
     writer: RecordingWriter = installed().load(OFFERS, ending)
     report, kept, opened = Report(), _Carried(), ExitStack()
     try:
@@ -116,7 +113,7 @@ def convert(
         raise KeyboardInterrupt
 
 
-def _check(recordings: list[Path], target: Path, source: str | None) -> str:
+def _check(recordings: Sequence[Path], target: Path, source: str | None, overwrite: bool) -> str:
     """Return the ending of the target that says who writes it, in small letters."""
     from tactile_graph.errors import did_you_mean
     from tactile_graph.files import check_target
@@ -132,19 +129,19 @@ def _check(recordings: list[Path], target: Path, source: str | None) -> str:
         raise click.UsageError(f"TARGET must end in {', '.join(kinds)}, got {name!r}{near}")
     if bool(recordings) == (source is not None):
         raise click.UsageError("give recordings before TARGET, or --source, and not both")
-    if target.exists():
-        goes_on = f"; 'record --append {pasted(str(target))}' goes on with it"
-        raise click.UsageError(
-            f"{target} is there already; remove it, or choose another name"
-            + (goes_on if is_store(target) else "")
-        )
+    if target.is_dir() or (target.exists() and not overwrite):
+        remedy = "" if target.is_dir() else ", or write over it with --overwrite"
+        if is_store(target):
+            remedy = f"; 'record --append {pasted(str(target))}' goes on with it"
+        told = f"{target} is there already; remove it, or choose another name{remedy}"
+        raise click.UsageError(told)
     check_target("TARGET", target)
     check_targets([("TARGET", target)])
     return max(fitting, key=len)
 
 
 def _frames(
-    recordings: list[Path],
+    recordings: Sequence[Path],
     source: str | None,
     settings: tuple[str, ...],
     told: dict[str, Any],

@@ -320,12 +320,14 @@ class _Pace(NamedTuple):
 
 
 def _pace(frames: Sequence[Frame]) -> _Pace:
-    times = np.array([f.time_s for f in frames if f.time_s is not None], dtype=np.float64)
-    steps = np.diff(times)
+    timed = [(k, f.time_s) for k, f in enumerate(frames) if f.time_s is not None]
+    places, times = np.array(timed, dtype=np.float64).reshape(-1, 2).T
+    taken = np.diff(times)
+    steps = taken / np.diff(places)  # frames without a time may lie between
     onward = steps[steps > 0]
     if len(onward) < 1:
         return _Pace(None, None, 0, None)
     usual = float(np.median(onward))
     jitter = float(np.median(np.abs(onward - usual))) * MAD_TO_SD / usual
     n_leaps = sum(is_leap(float(step), usual) for step in steps)
-    return _Pace(1.0 / usual, jitter, n_leaps, float(times.max() - times.min()))
+    return _Pace(1.0 / usual, jitter, n_leaps, float(taken[taken > 0].sum()))

@@ -18,8 +18,9 @@ class RecordingWriter(NamedTuple):
     Attributes
     ----------
     write : callable
-        Writes the frames to a path that does not exist yet, so that it is there whole or not at
-        all; returns how many there were. The third argument says in a line where they come from.
+        Writes the frames to a path, so that they are there whole or not at all; a file that is
+        there, as by ``--overwrite``, is replaced at once at the end, a folder is never there.
+        Returns how many there were. The third argument says in a line where they come from.
         Raises `DataError` for frames that have no place in it, `UsageError` if it cannot write.
     loses : tuple of str
         What of a frame has no place in it: ``"truth"``, ``"device time"``, ``"gaps"``,

@@ -46,7 +46,7 @@ def _head(title: str, summary: Summary) -> Text:
     parts = [f"{frames} frame{'' if frames == 1 else 's'}"]
     parts[0] += f" of {n} recordings" if n > 1 else ""
     if summary.lasts_s:
-        parts.append(_rate(frames - n, summary.lasts_s))
+        parts.append(_rate(summary.n_steps, summary.lasts_s))
     return Text.assemble((title, "bold"), ": ", ", ".join(parts))
 
 

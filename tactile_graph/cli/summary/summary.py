@@ -48,20 +48,21 @@ class Statistics(NamedTuple):
 class Times:
     """When frames were taken, in the clock of their recording."""
 
-    first_s: float = math.inf
-    last_s: float = -math.inf
+    lasts_s: float | None = None
+    """What passed from frame to frame, where a clock that goes back counts nothing; None where no
+    frame has a time."""
+    n_back: int = 0
+    """How often the clock goes back."""
+    _last_s: float = math.nan
 
     def add(self, time_s: NDArray[np.float64]) -> None:
         """Take in times; NaN is none."""
         known = time_s[np.isfinite(time_s)]
         if known.size:
-            self.first_s = min(self.first_s, float(known.min()))
-            self.last_s = max(self.last_s, float(known.max()))
-
-    @property
-    def lasts_s(self) -> float | None:
-        """From the first frame to the last; None where no frame has a time."""
-        return self.last_s - self.first_s if self.last_s >= self.first_s else None
+            steps = np.diff(known, prepend=self._last_s)
+            self.lasts_s = (self.lasts_s or 0.0) + float(steps[steps > 0.0].sum())
+            self.n_back += int(np.count_nonzero(steps < 0.0))
+            self._last_s = float(known[-1])
 
 
 @dataclass
@@ -173,6 +174,11 @@ class Summary:
         told = [g.times.lasts_s for g in self.recordings.values()]
         known = [t for t in told if t is not None]
         return sum(known) if known else None
+
+    @property
+    def n_steps(self) -> int:
+        """How many steps from frame to frame those seconds are."""
+        return self.frames - sum(1 + g.times.n_back for g in self.recordings.values())
 
     def add(self, chunk: Chunk | Lines, otherwise: str, prefix: str = "") -> None:
         """Take in some rows.

@@ -11,6 +11,7 @@ import numpy as np
 
 from tactile_graph.engine.calls.context import Context
 from tactile_graph.engine.calls.each import for_each, mapped, told_of_gaps
+from tactile_graph.engine.calls.gaps import Gaps
 from tactile_graph.engine.calls.isolated import Host, isolated_step
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.steps.signature import Kind
@@ -108,13 +109,9 @@ def _seeded(node: Node, context: Context, hosts: dict[str, Host]) -> Call:
 
 
 def _with_gap(step: Call, name: str, context: Context) -> Call:
-    last: float | None = None
+    gaps = Gaps()
 
     def call(*args: Any, **kwargs: Any) -> Any:
-        nonlocal last
-        now = context.frame.time_s
-        gap = None if last is None or now is None else now - last
-        last = now
-        return step(*args, **kwargs, **{name: gap})
+        return step(*args, **kwargs, **{name: gaps.before(context.frame)})
 
     return call

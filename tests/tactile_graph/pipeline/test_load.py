@@ -7,9 +7,9 @@ import pickle
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 import pytest
@@ -63,6 +63,19 @@ def needs(image: Image, *, gain: float, table: Annotated[list[int], Len(2)] = [1
     return image
 
 
+def anything(values: Sequence[Any | None]) -> int:
+    return len(values)
+
+
+class Listed(NamedTuple):
+    n: int
+    values: list[int]
+
+
+def listed(image: Image) -> Listed:
+    return Listed(0, [])
+
+
 def several(images: list[Image]) -> Image:
     return images[0]
 
@@ -97,7 +110,10 @@ ALL: dict[str, Any] = {
     **STEPS, "refuses": Refuses, "frames": frames, "count": Count, "torn": Torn
 } | {
     f.__name__: f
-    for f in (threshold, volts, to_grams, finer, both, sixteen, masks, needs, several, maybe)
+    for f in (
+        threshold, volts, to_grams, finer, both, sixteen, masks, needs, several, maybe, anything,
+        listed,
+    )
 }  # fmt: skip
 
 
@@ -298,6 +314,10 @@ BAD_NODES = [
     (
         "early: {step: finer, in: lste}\nlate: {step: masks, in: frame}",
         "no node named 'lste'; did you mean 'late'",
+    ),
+    (
+        "l: {step: listed, in: frame}\nm: {step: anything, in: l}",
+        r"takes a Sequence\[Any \| None\]; try l\.values",
     ),
     ("m: {step: several, in: frame}", r"takes a list\[Image\]; as a list of nodes it is \[frame\]"),
     ("m: {step: torn, in: frame}", r"node 'm': step 'torn' cannot be made: KeyError: 'x' \(.*py:"),

@@ -125,6 +125,29 @@ def test_a_store_that_is_there_is_refused_with_what_goes_on_with_it(
     assert f"{target} is there already; {remedies}\n" in got.stderr
 
 
+@pytest.mark.parametrize("name", ["b.npz", "b.csv"])
+def test_a_file_is_written_over_if_told_and_stays_where_that_fails(
+    tmp_path: Path, made: list[Frame], name: str
+) -> None:
+    target = tmp_path / name
+    target.write_text("another")
+    got = CliRunner().invoke(convert, [str(tmp_path / "a.npz"), str(target)])
+    assert "or choose another name, or write over it with --overwrite" in got.stderr
+    got = CliRunner().invoke(convert, [str(tmp_path / "none.npz"), str(target), "--overwrite"])
+    assert got.exit_code
+    assert target.read_text() == "another"
+    run(tmp_path / "a.npz", target, "--overwrite")
+    assert len(list(recording(path=target, report=Report()))) == len(made)
+
+
+def test_no_store_is_written_over(tmp_path: Path, made: list[Frame]) -> None:
+    target = tmp_path / "b.zarr"
+    run(tmp_path / "a.npz", target)
+    got = CliRunner().invoke(convert, [str(tmp_path / "a.npz"), str(target), "--overwrite"])
+    assert f"{target} is there already; remove it" in got.stderr
+    assert len(list(recording(path=target, report=Report()))) == len(made)
+
+
 def test_a_store_that_came_to_be_meanwhile_stays(tmp_path: Path, made: list[Frame]) -> None:
     write = installed().load(OFFERS, ".zarr").write
     write(tmp_path / "b.zarr", iter(made), "another")

@@ -216,8 +216,10 @@ class Archive:
         held = mapped(self.where, info, self._check)
         return np.ndarray(shape, dtype, held, begin, order="F" if by_column else "C")
 
-    def optional(self, name: str, shape: tuple[int, ...], kinds: str) -> NDArray[Any] | None:
-        """Return an array if it is there; a wrong shape or type is an error.
+    def optional(
+        self, name: str, shape: tuple[int, ...], kinds: str, meaning: str = ""
+    ) -> NDArray[Any] | None:
+        """Return an array if it is there; a wrong shape or type is an error that says the meaning.
 
         Raises
         ------
@@ -231,7 +233,7 @@ class Archive:
             raise DataError(
                 self.where,
                 f"array {name!r} has shape {array.shape} and type {array.dtype}, "
-                f"expected shape {shape}",
+                f"expected shape {shape}{meaning}",
             )
         return array
 
@@ -327,7 +329,11 @@ def _kind_of(dtype: np.dtype[Any]) -> str:
 
 
 def _pair(arrays: Archive, name: str, smallest: float) -> tuple[float, float] | None:
-    pair = arrays.optional(name, (2,), "fiu")
+    if name == "pitch_cm" and name in arrays.names and arrays.load(name).shape in ((), (1,)):
+        one = arrays.optional(name, arrays.load(name).shape, "fiu")  # of square cells
+        pair = None if one is None else np.repeat(one, 2)
+    else:
+        pair = arrays.optional(name, (2,), "fiu", ", along x and along y")
     if pair is None:
         return None
     x, y = float(pair[0]), float(pair[1])

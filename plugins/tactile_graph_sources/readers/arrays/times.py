@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables.layout import assumed_unit
-from tactile_graph_sources.readers.text.stamps import by_format
 from tactile_graph_sources.readers.words.compact import stamps_s
-from tactile_graph_sources.readers.words.dialect import clock_s
+from tactile_graph_sources.readers.words.moments import colon_unit_s, zone_remedy
 from tactile_graph_sources.readers.words.names import SECONDS, named
+from tactile_graph_sources.readers.words.running_clock import RunningClock
 
 Seconds = NDArray[np.float64]
 TEXTS = "OSTU"
@@ -77,14 +77,15 @@ def _numbers(texts: list[str]) -> Seconds | None:
 def _of_texts(reading: Reading, name: str, texts: list[str]) -> Seconds | None:
     """Return the times that texts say, as in a table, from the first on; NaN for empty ones."""
     given = reading.told.of_columns.time_format
-    found = [by_format(t, given) if given else clock_s(t) for t in texts]
+    clock = RunningClock(str(reading.path), reading.assume, given, colon_unit_s(texts))
+    found = [clock.read(t) for t in texts]
     odd = next((t for t, at in zip(texts, found, strict=True) if at is None and t.strip()), "")
     if odd or not any(at is not None for at in found):
         why = f"{odd.strip()[:30]!r} is no time that is known" if odd else "its texts are empty"
-        reading.assume(f"times left out, as of {name!r} {why} (give time_format)")
+        remedy = zone_remedy(odd) or "give time_format"
+        reading.assume(f"times left out, as of {name!r} {why} ({remedy})")
         return None
     at = np.array([np.nan if one is None else one for one in found])
-    at[1:] += 86400.0 * np.cumsum(np.nan_to_num(np.diff(at)) < -43200.0)  # over midnight
     at -= at[np.isfinite(at)][0]
     return at.round(6)
 

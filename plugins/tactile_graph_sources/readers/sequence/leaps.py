@@ -15,6 +15,7 @@ from tactile_graph.wires.frame_stack import FrameStack
 LEAP = 20.0
 """Times the usual step from frame to frame, from which on a step is a leap."""
 FEWEST_STEPS, RECENT = 3, 31
+TIMELESS = "frames without a time, among others that have one"
 
 
 def is_leap(step_s: float, usual_s: float) -> bool:
@@ -30,9 +31,10 @@ def usual_step(steps_s: Sequence[float]) -> float:
 
 @dataclass(slots=True)
 class _Clock:
-    """The last time of one sensor, and its latest steps."""
+    """The last time of one sensor, its latest steps, and its frames before any time."""
 
     last_s: float | None = None
+    n_before: int = 0
     steps_s: deque[float] = field(default_factory=lambda: deque(maxlen=RECENT))
 
 
@@ -74,7 +76,8 @@ def with_leaps_told(
 
     A frame whose time goes back is told, and marked as following a gap: recordings were joined or
     sorted. Time that leaps ahead is what devices that pause give, and no frame need be missing.
-    Where frames share a time, as by a clock coarser than they come, speeds are too high.
+    Where frames share a time, as by a clock coarser than they come, speeds are too high. Frames
+    without a time are counted where others have one.
 
     Parameters
     ----------
@@ -91,8 +94,15 @@ def with_leaps_told(
         time_s = frame.time_s
         clock = clocks.setdefault(frame.label, _Clock())
         if time_s is None:
+            if clock.last_s is None:  # none of its frames may have one
+                clock.n_before += 1
+            else:
+                report.count(TIMELESS)
             yield frame
             continue
+        if clock.n_before:
+            report.count(TIMELESS, clock.n_before)
+            clock.n_before = 0
         last_s, clock.last_s = clock.last_s, time_s
         step_s = 0.0 if last_s is None else time_s - last_s
         if step_s < 0.0:

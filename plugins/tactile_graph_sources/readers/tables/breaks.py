@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from tactile_graph_sources.readers.words.dialect import clock_s
+from tactile_graph_sources.readers.words.moments import clock_s
 from tactile_graph_sources.readers.words.names import ROLES, SECONDS
 
 FRAME_LINE = re.compile(

@@ -22,7 +22,7 @@ from tactile_graph_sources.readers.tables.extra import without_extra
 from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
 from tactile_graph_sources.readers.tables.layout import Layout, assumed_unit
 from tactile_graph_sources.readers.tables.table import ENDLESS, Table
-from tactile_graph_sources.readers.words.dialect import clock_s
+from tactile_graph_sources.readers.words.moments import clock_s
 from tactile_graph_sources.readers.words.told import Told
 
 SMALLEST_SURE_SQUARE = 64

@@ -31,6 +31,7 @@ from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_
 from tactile_graph_sources.readers.tables.table import Table, table_of
 from tactile_graph_sources.readers.words.counter import runs_over
 from tactile_graph_sources.readers.words.dialect import unquoted
+from tactile_graph_sources.readers.words.moments import colon_unit_s, zone_remedy
 from tactile_graph_sources.readers.words.names import ColumnsTold, named, units_of
 from tactile_graph_sources.readers.words.told import Told
 from tactile_graph_sources.readers.words.units import (
@@ -100,7 +101,7 @@ def layout_of(
         return _long(base, table, told.of_columns)
     base = replace(base, assumed=(*base.assumed, *_strange_unit(base, table)))
     date = table.dates[0] if table.dates and _CLOCK in roles else None
-    base = replace(base, roles=roles, date=date)
+    base = replace(base, roles=roles, date=date, colon_s=_colon_s(table, roles))
     if roles.get("time") is not None:
         base = timed(base, table)
     base = replace(base, time_format=told.of_columns.time_format or base.time_format)
@@ -161,6 +162,11 @@ def _unnamed_value(table: Table, roles: dict[str, int]) -> str:
     )
 
 
+def _colon_s(table: Table, roles: dict[str, int]) -> float:
+    """Return the unit of what stands behind the last colon of times; 0 where it is decimals."""
+    return colon_unit_s(row[roles[_CLOCK]] for row in table.texts) if _CLOCK in roles else 0.0
+
+
 def _strange_time(table: Table, roles: dict[str, int]) -> str:
     """Return what to ask where the column of times holds neither numbers nor known times of day."""
     k = roles.get("time", table.named.roles.get("time"))
@@ -169,10 +175,11 @@ def _strange_time(table: Table, roles: dict[str, int]) -> str:
     if roles.get(_CLOCK) is not None:
         return ""
     name = f"{table.named.names[k]!r}" if table.named.names else f"{k + 1}"
-    return (
-        f"its column {name} says {table.texts[0][k].strip()[:30]!r}, no number and no time that is "
-        "known; say how it is written as strptime takes it, such as time_format='%H:%M:%S'"
+    text = table.texts[0][k].strip()
+    remedy = zone_remedy(text) or (
+        "say how it is written as strptime takes it, such as time_format='%H:%M:%S'"
     )
+    return f"its column {name} says {text[:30]!r}, no number and no time that is known; {remedy}"
 
 
 def _strange_column(table: Table, roles: dict[str, int]) -> str:
@@ -294,6 +301,7 @@ def _long(base: Layout, table: Table, told: ColumnsTold) -> Layout:
         roles.pop("time", None)
         roles[_CLOCK] = table.clocks[0]
     base = replace(base, date=table.dates[0] if table.dates and _CLOCK in roles else None)
+    base = replace(base, colon_s=_colon_s(table, roles))
     names = {role: table.named.names[k] for role, k in table.named.roles.items()}
     said = base.said
     if table.named.quantity != "raw":

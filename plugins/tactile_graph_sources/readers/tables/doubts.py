@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from itertools import zip_longest
 
 from tactile_graph_sources.readers.tables.table import is_comment
-from tactile_graph_sources.readers.words.dialect import Dialect, clock_s, is_row, unquoted
+from tactile_graph_sources.readers.words.dialect import Dialect, is_row, unquoted
+from tactile_graph_sources.readers.words.moments import clock_s
 
 _LOOKED_AT = 400
 _FEWEST_PAIRS, _FEWEST_LINES = 3, 2

@@ -58,6 +58,8 @@ class Layout:
         Column of what comes on top of the time, and the seconds of one in it.
     date : int, optional
         Column of the date, where that of clock holds times of day alone.
+    colon_s : float
+        Unit of what stands behind a last colon of times of day; 0 for decimals of a second.
     time_format : str
         Of the column of clock, where the settings say it.
     spacing : (float, float), optional
@@ -94,6 +96,7 @@ class Layout:
     part: tuple[int, float] | None = None
     date: int | None = None
     time_format: str = ""
+    colon_s: float = 0.0
     spacing: tuple[float, float] | None = None
     first: tuple[float, float] = (0.0, 0.0)
     sensor: tuple[int, str] | None = None

@@ -25,11 +25,10 @@ from tactile_graph_sources.readers.words.dialect import (
     ERRORS,
     MISSING,
     Dialect,
-    clock_s,
-    is_date,
     is_row,
     without_rules,
 )
+from tactile_graph_sources.readers.words.moments import clock_s, is_date
 from tactile_graph_sources.readers.words.names import (
     ROLES,
     SECONDS,

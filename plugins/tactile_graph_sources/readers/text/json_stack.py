@@ -23,9 +23,10 @@ from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
 from tactile_graph_sources.readers.tables.layout import assumed_unit
 from tactile_graph_sources.readers.tables.sensors import chosen, labels_of_lines
 from tactile_graph_sources.readers.words.compact import stamps_s
-from tactile_graph_sources.readers.words.dialect import clock_s
+from tactile_graph_sources.readers.words.moments import clock_s, colon_unit_s, zone_remedy
 from tactile_graph_sources.readers.words.names import ROLES, SECONDS, named
 from tactile_graph_sources.readers.words.preamble import PAIRS, Described, described_by
+from tactile_graph_sources.readers.words.running_clock import RunningClock
 
 FEW_LISTS, LONGEST_LIST = 200_000, 2_000_000
 LINES_LOOKED_AT = 20
@@ -134,7 +135,7 @@ def frames_of(reading: Reading, entries: Entries, damage: Sequence[Damage] = ())
     reading.recognised(entries.why, entries.said.notes)
     reading.report.expect(len(arrays))
     entries = entries if reading.told.of_columns.time_unit else _without_stamps(entries)
-    factor = _time_factor(reading, entries)
+    clocks, factor = _clocks_s(reading, entries), _time_factor(reading, entries)
     for k, array in enumerate(arrays):
         while left and left[-1].n_before <= k:
             _, place, what, n_frames = left.pop()
@@ -150,7 +151,7 @@ def frames_of(reading: Reading, entries: Entries, damage: Sequence[Damage] = ())
             origin_cm=entries.said.origin_cm,
             quantity=entries.said.quantity,
             factor=entries.said.factor,
-            time_s=_time(entries, k, factor),
+            time_s=_time(entries, k, factor, clocks),
             gap=k in entries.gaps,
         )
     for _, place, what, n_frames in reversed(left):
@@ -471,7 +472,8 @@ def _time_factor(reading: Reading, entries: Entries) -> float:
         told = f"{entries.time_name!r} holds {texts[0][:30]!r}, a text; leave out time_unit"
         raise DataError(str(reading.path), told)
     if odd := next((t for t in texts if clock_s(t) is None), ""):
-        reading.assume(f"times left out, as {odd[:30]!r} is no time that is known")
+        remedy = f" ({told})" if (told := zone_remedy(odd)) else ""
+        reading.assume(f"times left out, as {odd[:30]!r} is no time that is known{remedy}")
     if unit:
         return SECONDS[unit]
     said = named((entries.time_name.rpartition(".")[2], ""))
@@ -479,6 +481,8 @@ def _time_factor(reading: Reading, entries: Entries) -> float:
         return said.time_factor
     numbers = [_number(t) if isinstance(t, str) else t for t in entries.times]
     times = [t for t in numbers if isinstance(t, int | float) and abs(t) < 1e300]
+    if texts and not times:
+        return 1.0
     factor, note = assumed_unit(np.array(times, dtype=np.float64), said.time_unit)
     reading.assume(note)
     return factor
@@ -491,16 +495,23 @@ def _number(text: str) -> float | None:
         return None
 
 
-def _time(entries: Entries, k: int, factor: float) -> float | None:
+def _clocks_s(reading: Reading, entries: Entries) -> list[float | None]:
+    """Return the times that are texts in seconds from the first on; None where there is none."""
+    texts = [t if isinstance(t, str) and _number(t) is None else "" for t in entries.times or ()]
+    clock = RunningClock(str(reading.path), reading.assume, "", colon_unit_s(texts))
+    found = [clock.read(text) for text in texts]
+    first = next((at for at in found if at is not None), 0.0)
+    return [None if at is None else round(at - first, 6) for at in found]
+
+
+def _time(entries: Entries, k: int, factor: float, clocks: Sequence[float | None]) -> float | None:
     if not entries.times:
         return None if entries.said.frame_s is None else k * entries.said.frame_s
     time = entries.times[k]
     if isinstance(time, str) and (number := _number(time)) is not None:
         time = number
     if isinstance(time, str):
-        first = next((c for t in entries.times if (c := clock_s(str(t))) is not None), None)
-        at = clock_s(time)
-        return None if at is None or first is None else round(at - first, 6)
+        return clocks[k]
     if isinstance(time, bool) or not isinstance(time, int | float):
         return None
     time_s = float(time) * factor if abs(time) < 1e300 else np.inf

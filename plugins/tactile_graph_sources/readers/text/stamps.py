@@ -4,34 +4,34 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from datetime import datetime
 
 from tactile_graph_sources.devices.device_clock import DeviceClock
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.tables.layout import Layout
-from tactile_graph_sources.readers.words.compact import HHMMSS
-from tactile_graph_sources.readers.words.dialect import clock_s, floats
+from tactile_graph_sources.readers.words.dialect import floats
+from tactile_graph_sources.readers.words.moments import clock_s
 from tactile_graph_sources.readers.words.own_number import number_in
+from tactile_graph_sources.readers.words.running_clock import RunningClock
+from tactile_graph_sources.readers.words.short_counter import ShortCounter
 
-_DAY_S = 86400.0
 _COUNTS = 1 << 32
 
 
 class Stamps:
     """Reads what a table keeps of each frame beside its cells.
 
-    Times of day count from the first frame, and go on over midnight. Where a table has no time
-    but says its rate, the frame's number gives it.
+    Times of day count from the first frame, and go on as a `RunningClock` does. Where a table has
+    no time but says its rate, the frame's number gives it.
     """
 
     def __init__(self, reading: Reading, layout: Layout) -> None:
         self._reading = reading
         self._layout = layout
         self._first: float | None = None
-        self._last = -math.inf
-        self._days = 0.0
+        given, colon_s = layout.time_format, layout.colon_s
+        self._clock = RunningClock(str(reading.path), reading.assume, given, colon_s)
         self._start = reading.start
-        self._counter = DeviceClock(1.0, _COUNTS)
+        self._counter, self._short = DeviceClock(1.0, _COUNTS), ShortCounter()
 
     def of(self, fields: Sequence[str]) -> tuple[float | None, float | None]:
         """Return the number and the time (s) of a frame; None where there is none.
@@ -55,7 +55,7 @@ class Stamps:
         if "clock" in layout.roles:
             clock = fields[layout.roles["clock"]]
             dated = "" if layout.date is None else f"{fields[layout.date].strip()} {clock.strip()}"
-            return self._clock(dated if dated and clock_s(dated) is not None else clock)
+            return self._on_from_first(dated if dated and clock_s(dated) is not None else clock)
         if "time" not in layout.roles:
             frame_s = layout.said.frame_s
             return None if frame_s is None else (self._reading.index - self._start) * frame_s
@@ -67,27 +67,14 @@ class Stamps:
         return time_s
 
     def _run_on(self, time: float) -> float:
-        """Return a time in counts as if micros() and the like did not begin anew at 2^32."""
-        return self._counter.run_on(time) if self._layout.time_factor <= 1e-3 else time
+        """Return a time in counts as if micros() and the like did not begin anew."""
+        if self._layout.time_factor > 1e-3:
+            return time
+        return self._short.run_on(self._counter.run_on(time))
 
-    def _clock(self, text: str) -> float:
-        given = self._layout.time_format
-        at = by_format(text, given) if given else clock_s(text)
+    def _on_from_first(self, text: str) -> float:
+        at = self._clock.read(text)
         if at is None:
             raise ValueError(f"{text.strip()[:30]!r} is no time of day")
-        if at + self._days < self._last - _DAY_S / 2:
-            self._days += _DAY_S
-        self._last = at + self._days
-        self._first = self._last if self._first is None else self._first
-        return round(self._last - self._first, 6)
-
-
-def by_format(text: str, given: str) -> float | None:
-    """Return a date or time of day in seconds, as `strptime` takes it; None where it is none."""
-    # As a number 00:09:05 is written 905.
-    text = text.strip().zfill(6) if given == HHMMSS else text
-    try:
-        at = datetime.strptime(text.strip().strip('"'), given)
-    except ValueError:
-        return None
-    return (at.replace(tzinfo=None) - datetime(2000, 1, 1)).total_seconds()
+        self._first = at if self._first is None else self._first
+        return round(at - self._first, 6)

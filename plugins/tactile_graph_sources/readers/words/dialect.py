@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import csv
-import datetime
 import math
 import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tactile_graph_sources.readers.words.compact import stamp_s
+from tactile_graph_sources.readers.words.moments import CLOCK_IN_LINE
 
 ERRORS = ("#n/a", "#nv", "#div/0!", "#value!", "#wert!", "#valeur!", "#num!", "#zahl!", "#ref!",
           "#bezug!", "#name?", "#null!")  # fmt: skip
@@ -26,25 +25,6 @@ _WORD = re.compile(r"[^\s,;|]+")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _ARROW = re.compile(r"\s*->|\s>\s")
 """What serial monitors put behind the time of a line."""
-_CLOCK = re.compile(
-    r"(?:(\d{4})-(\d\d)-(\d\d)[T ]+|(\d\d?)[./](\d\d?)[./](\d{4})[, ]+)?"
-    r"(\d{1,2}):(\d\d):(\d\d)(?:[.,:](\d{1,9}))?(?:Z|[+-]\d\d:?\d\d)?(?:\s?([AP])\.?M\.?)?",
-    re.IGNORECASE,
-)
-_WHOLE_CLOCK = re.compile(_CLOCK.pattern.replace("[.,:]", "[.:]"), re.IGNORECASE)
-"""The same within a line, where what stands behind a comma may be another field."""
-_DATE = re.compile(r"\d{4}[-/.]\d\d?[-/.]\d\d?|\d\d?[-/.]\d\d?[-/.](?:\d{4}|\d\d)")
-_ELAPSED = re.compile(
-    r"(?:(\d{1,2}):)?(\d{1,2}\.\d{1,9})|([-+]?\d+(?:\.\d+)?)\s*(s|secs?|ms|us|µs)"
-)
-"""Minutes and seconds, as spreadsheets show times of day, or seconds with their unit."""
-_DURATION = re.compile(
-    r"([-+]?\d{1,6}) days?,? \+?(\d{1,2}):(\d\d):(\d\d(?:\.\d{1,9})?)"
-    r"|P(\d{1,6})DT(\d{1,2})H(\d{1,2})M(\d{1,2}(?:\.\d{1,9})?)S"
-)
-"""Days, hours, minutes and seconds, as pandas and Python write how long something took."""
-_UNIT_S = {"s": 1.0, "sec": 1.0, "secs": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6}
-_DAY_0 = datetime.date(2000, 1, 1).toordinal()  # near enough for microseconds to be kept
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+(,\d+)?")
 _COMMA_WITHIN = re.compile(r"(?<=\d),(?=\d+(?!\d|:|\.\d))")
 """One of decimals, not the one before a time of day or a number with decimals of its own."""
@@ -89,53 +69,9 @@ def is_row(line: str) -> bool:
     """Return whether a line is a row of numbers, be a date, label or bracket among them or not."""
     if is_numeric(line):
         return True
-    words = _WORD.findall(_WHOLE_CLOCK.sub("", line).translate(_BRACKETS).replace('"', ""))
+    words = _WORD.findall(CLOCK_IN_LINE.sub("", line).translate(_BRACKETS).replace('"', ""))
     n = sum(1 for w in words if _NUMBER.fullmatch(w))
     return n >= 3 and 5 * n >= 3 * len(words)
-
-
-def is_date(text: str) -> bool:
-    """Return whether a text is a date without a time of day."""
-    return _DATE.fullmatch(text.strip().strip('"')) is not None
-
-
-def clock_s(text: str) -> float | None:
-    """Return a date and time of day, one alone, or a duration, in seconds; None where it is none.
-
-    Only differences mean anything.
-    """
-    text = text.strip().strip('"')
-    found = _CLOCK.fullmatch(text)
-    if found is None:
-        elapsed = _ELAPSED.fullmatch(text)
-        if elapsed is None:
-            duration = _duration_s(text)
-            return stamp_s(text) if duration is None else duration
-        minutes, seconds, number, unit = elapsed.groups()
-        if unit:
-            return float(number) * _UNIT_S[unit]
-        return int(minutes) * 60 + float(seconds) if minutes else None
-    year, month, day, day2, month2, year2, hour, minute, second, part, half = found.groups()
-    days = 0
-    if year or year2:
-        if half or (month2 and int(month2) > 12):  # as Americans write dates
-            day2, month2 = month2, day2
-        try:
-            date = datetime.date(int(year or year2), int(month or month2), int(day or day2))
-        except ValueError:
-            return None
-        days = date.toordinal() - _DAY_0
-    hours = int(hour) % 12 + 12 * (half.lower() == "p") if half else int(hour)
-    whole = days * 86400 + hours * 3600 + int(minute) * 60 + int(second)
-    return whole + (float(f"0.{part}") if part else 0.0)
-
-
-def _duration_s(text: str) -> float | None:
-    found = _DURATION.fullmatch(text)
-    if found is None:
-        return None
-    days, hours, minutes, seconds = (float(g) for g in found.groups() if g is not None)
-    return round(days * 86400 + hours * 3600 + minutes * 60 + seconds, 9)
 
 
 class Dialect(NamedTuple):

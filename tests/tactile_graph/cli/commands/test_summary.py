@@ -65,6 +65,16 @@ def test_frames_outcomes_and_quantities_are_counted_of_each_recording_and_in_all
     assert second["quantities"]["circle.x_cm"]["mean"] is None
 
 
+def test_a_joined_recording_lasts_as_long_as_its_parts() -> None:
+    head = "frame,time_s,load.outcome,load.total\n"
+    times = [100.0, 101.0, 102.0, 0.0, 1.0, "", 3.0]
+    Path("joined.csv").write_text(head + "".join(f"{k},{t},ok,5\n" for k, t in enumerate(times)))
+    assert of("joined.csv")["lasts_s"] == 5.0
+    assert (
+        "7 frames, 5 s by their times (1 frames a second)" in call("summary", "joined.csv").stdout
+    )
+
+
 def test_errors_are_by_their_size_and_angles_have_no_mean() -> None:
     told = of("out.csv")["quantities"]
     error = told["circle.centre_error_cm"]

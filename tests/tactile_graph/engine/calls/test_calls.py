@@ -13,6 +13,7 @@ import pytest
 from helpers_graphs import STEPS as STEPS_OF_ALL
 from helpers_graphs import frame, registry
 from tactile_graph import Degenerate, Frame, Image, loads
+from tactile_graph.engine.calls.gaps import Gaps
 from tactile_graph.engine.calls.sources import Numbering
 from tactile_graph.engine.outcomes.outcome import Failed
 from tactile_graph.errors import DataError, PipelineError, UsageError
@@ -104,6 +105,26 @@ def test_each_label_has_its_own_state_and_clock() -> None:
     got = [runner(Frame.of(np.ones((2, 2)), time_s=t, label=name))["a"] for name, t in rows]
     assert got == ["1 None", "1 None", "2 0.5", "2 0.25", "1 None"]
     assert runner.n_states == 3
+
+
+@pytest.mark.parametrize(
+    ("times_s", "told"),
+    [
+        ([0.0, 0.5, None, 1.5, 2.0], [None, 0.5, 0.5, 0.5, 0.5]),
+        ([0.0, 0.5, None, None, 2.25], [None, 0.5, 0.5, 0.5, 0.75]),
+        ([0.0, 0.5, None, 0.75, 1.25], [None, 0.5, 0.5, 0.0, 0.25]),  # known times never move
+        ([0.0, 0.5, 9.0, None, 10.0], [None, 0.5, 8.5, 0.5, 0.5]),  # a pause
+        ([0.0, 0.5, None, 0.25, 0.75], [None, 0.5, 0.5, -0.75, 0.5]),  # a clock set back
+        ([0.0, None, 1.0, None], [None, None, 0.5, 0.5]),
+        ([None, None, 3.0], [None, None, None]),
+    ],
+)
+def test_a_frame_without_a_time_shares_that_between_the_known_ones(
+    times_s: list[float | None], told: list[float | None]
+) -> None:
+    gaps = Gaps()
+    frames = [Frame.of(np.ones((2, 2)), index=k, time_s=t) for k, t in enumerate(times_s)]
+    assert [gaps.before(frame) for frame in frames] == told
 
 
 def test_a_step_that_writes_has_one_instance_whatever_the_labels() -> None:

@@ -735,10 +735,10 @@ def test_a_stateful_step_that_is_skipped_keeps_its_state_and_learns_the_true_gap
     assert out == [(1, -1.0), None, None, (2, 3.5)]
 
 
-def test_a_gap_that_begins_or_ends_at_a_frame_without_time_is_not_told() -> None:
+def test_a_frame_without_time_takes_its_share_of_the_gap_over_it() -> None:
     runner = make("s: {step: since, in: frame}", "s").runner()
     out = [runner(frame(1, i, t))["s"][1] for i, t in enumerate([0.0, None, 1.0, 1.5])]
-    assert out == [-1.0, -1.0, -1.0, 0.5]
+    assert out == [-1.0, -1.0, 0.5, 0.5]
 
 
 def test_each_runner_starts_with_a_state_of_its_own() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from helpers_recordings import frames_of, write
 from tactile_graph import Frame
@@ -55,3 +56,19 @@ def test_leaps_are_measured_and_the_time_taken_is_from_first_to_last() -> None:
     times = [0.0, 0.02, 0.04, 0.06, 5.0, 5.02, 0.5]
     measured = measure([Frame.of(np.eye(3), 1.0, index=k, time_s=t) for k, t in enumerate(times)])
     assert (measured.n_leaps, measured.duration_s) == (2, 5.02)
+
+
+def test_frames_without_a_time_are_counted_where_others_have_one(tmp_path: Path) -> None:
+    path, times = tmp_path / "some.npz", np.array([np.nan, 0.0, 0.1, np.nan, 0.3])
+    np.savez(path, frames=np.ones((5, 3, 3)), time_s=times)
+    frames, report = frames_of(path)
+    assert report.counts["frames without a time, among others that have one"] == 2
+    assert (measure(frames).rate_hz, measure(frames).duration_s) == pytest.approx((10.0, 0.3))
+    np.savez(path, frames=np.ones((5, 3, 3)), time_s=np.full(5, np.nan))
+    assert not [what for what in frames_of(path)[1].counts if "without a time" in what]
+
+
+def test_the_time_taken_is_what_passed_where_recordings_were_joined() -> None:
+    times = [100.0, 100.1, 100.2, 0.0, 0.1, 0.2]
+    measured = measure([Frame.of(np.eye(3), 1.0, index=k, time_s=t) for k, t in enumerate(times)])
+    assert measured.duration_s == pytest.approx(0.4)
