@@ -10,8 +10,9 @@ from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
 from tactile_graph.errors import PipelineError, Problem, UsageError, one_of, shown
+from tactile_graph.pipeline.files_read import FilesRead
 from tactile_graph.pipeline.graph import FRAME, Graph
-from tactile_graph.pipeline.load import load_graph, parse_graph, resolve_again
+from tactile_graph.pipeline.load import load_graph, parse_again, parse_graph, resolve_again
 from tactile_graph.pipeline.resolve import SourceOverride
 from tactile_graph.pipeline.scope import Overrides
 from tactile_graph.plugins.registry import Registry, installed, installed_and
@@ -129,7 +130,7 @@ class Pipeline(Graph):
         return self
 
     def __reduce__(self) -> tuple[Callable[..., Pipeline], tuple[Any, ...]]:
-        """Pickle by text, settings and source: another process resolves them by its own plugins.
+        """Pickle by texts, settings and source: another process resolves them by its own plugins.
 
         Raises
         ------
@@ -141,7 +142,7 @@ class Pipeline(Graph):
                 f"pipeline {self.name!r} has a registry of its own, or steps: not to be pickled"
             )
         given = (self.text, self.file, dict(self.overrides), self.source_override)
-        return _unpickled, (*given, self.source is not None)
+        return _unpickled, (*given, self.source is not None, self.files)
 
     # -- running -----------------------------------------------------------------------------
 
@@ -422,9 +423,15 @@ class Pipeline(Graph):
 
 
 def _unpickled(
-    text: str, file: str, overrides: Overrides, source: SourceOverride, with_source: bool = True
+    text: str,
+    file: str,
+    overrides: Overrides,
+    source: SourceOverride,
+    with_source: bool = True,
+    files: FilesRead | None = None,
 ) -> Pipeline:
-    pipeline = Pipeline.of(resolve_again(parse_graph(text, file), overrides, source))
+    files = files or FilesRead.here()
+    pipeline = Pipeline.of(parse_again(text, file, None, overrides, source, files))
     return pipeline if with_source else replace(pipeline, source=None)
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from tactile_graph.errors import Mark, UsageError
 from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.files_read import FilesRead
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import Ref
@@ -247,6 +248,7 @@ class Graph:
     registry: Registry | None = None
     deadline_us: float | None = None
     """Within which a live run wants the result of a frame, from its arrival on."""
+    files: FilesRead = field(default_factory=FilesRead.here)
 
     @cached_property
     def types(self) -> dict[str, Any]:

@@ -603,6 +603,19 @@ def test_a_file_that_uses_itself_under_another_name_is_a_circle(reg: Any, tmp_pa
         load(path, reg)
 
 
+def test_files_that_use_each_other_are_a_circle_wherever_one_comes_in(
+    reg: Any, tmp_path: Path
+) -> None:
+    for name, used in (("d", "cb"), ("c", "b"), ("b", "c")):
+        nodes = ", ".join(f"{u}: {{use: {u}.yaml, with: {{m.tag: x}}}}" for u in used)
+        text = f"pipeline: {name}\nnodes: {{{nodes}, m: {{step: constant}}}}\noutputs: [m]\n"
+        (tmp_path / f"{name}.yaml").write_text(text)
+    with pytest.raises(PipelineError) as caught:
+        load(tmp_path / "d.yaml", reg)
+    assert "in a circle: c -> b -> c" in str(caught.value)
+    assert "in a circle: b -> c -> b" in str(caught.value)
+
+
 def test_a_byte_order_mark_is_no_mistake(reg: Any, tmp_path: Path) -> None:
     path = tmp_path / "bom.yaml"
     path.write_bytes(b"\xef\xbb\xbf" + text_of().encode())
