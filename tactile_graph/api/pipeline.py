@@ -141,7 +141,7 @@ class Pipeline(Graph):
                 f"pipeline {self.name!r} has a registry of its own, or steps: not to be pickled"
             )
         given = (self.text, self.file, dict(self.overrides), self.source_override)
-        return _unpickled, (*given, self.source is not None)
+        return _unpickled, (*given, self.source is not None, self.folder)
 
     # -- running -----------------------------------------------------------------------------
 
@@ -422,9 +422,15 @@ class Pipeline(Graph):
 
 
 def _unpickled(
-    text: str, file: str, overrides: Overrides, source: SourceOverride, with_source: bool = True
+    text: str,
+    file: str,
+    overrides: Overrides,
+    source: SourceOverride,
+    with_source: bool = True,
+    folder: str = "",
 ) -> Pipeline:
-    pipeline = Pipeline.of(resolve_again(parse_graph(text, file), overrides, source))
+    graph = parse_graph(text, file, folder=folder)
+    pipeline = Pipeline.of(resolve_again(graph, overrides, source))
     return pipeline if with_source else replace(pipeline, source=None)
 
 

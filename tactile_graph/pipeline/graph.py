@@ -247,6 +247,8 @@ class Graph:
     registry: Registry | None = None
     deadline_us: float | None = None
     """Within which a live run wants the result of a frame, from its arrival on."""
+    folder: str = ""
+    """The current one when it was loaded: relative paths are understood from there."""
 
     @cached_property
     def types(self) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from textwrap import shorten
 from typing import Any, NamedTuple
@@ -30,10 +31,13 @@ class Opened(NamedTuple):
         The pipelines that are being loaded because one uses the other: name and file.
     loaded : dict of Path to Graph or Exception
         What came of those that were loaded as they stand: they may be used more than once.
+    folder : str
+        From where relative paths are understood; empty for the current folder.
     """
 
     within: tuple[tuple[str, Path], ...]
     loaded: dict[Path, Graph | Exception]
+    folder: str = ""
 
 
 def load_graph(name: str | Path, registry: Registry | None = None) -> Graph:
@@ -42,15 +46,34 @@ def load_graph(name: str | Path, registry: Registry | None = None) -> Graph:
     return _load(find(name, registry), registry, {}, None, Opened((), {}))
 
 
-def parse_graph(text: str, file: str = "<text>", registry: Registry | None = None) -> Graph:
+def parse_graph(
+    text: str, file: str = "<text>", registry: Registry | None = None, folder: str = ""
+) -> Graph:
     """Return the graph that YAML text declares; ``file`` is the name its errors carry."""
-    return _build(text, file, registry or installed(), {}, None, Opened((), {}))
+    opened = Opened((), {}, _elsewhere(folder))
+    return _build(text, file, registry or installed(), {}, None, opened)
 
 
 def resolve_again(graph: Graph, overrides: Overrides, source: SourceOverride) -> Graph:
-    """Return the graph resolved again from its text, with other settings or another source."""
+    """Return the graph resolved again from its text, with other settings or another source.
+
+    Files that it names are those of the folder it was loaded in, whichever is current now.
+    """
     registry = graph.registry or installed()
-    return _build(graph.text, graph.file, registry, overrides, source, Opened((), {}))
+    opened = Opened((), {}, _elsewhere(graph.folder))
+    return _build(graph.text, graph.file, registry, overrides, source, opened)
+
+
+def _current_folder() -> str:
+    try:
+        return os.getcwd()
+    except OSError:  # it was deleted
+        return ""
+
+
+def _elsewhere(folder: str) -> str:
+    """Return a folder if it is there and not the current one, else nothing."""
+    return folder if folder != _current_folder() and _is_folder(Path(folder)) else ""
 
 
 def find(name: str | Path, registry: Registry, file: str = "") -> Path:
@@ -152,13 +175,13 @@ def _load(
             f"pipeline file {str(path)!r} cannot be read: it is not UTF-8 text "
             f"(byte 0x{error.object[error.start]:02x} in line {line}); save it as UTF-8"
         ) from None
-    return _build(text, _shown(path), registry, overrides, source, opened)
+    return _build(text, _shown(path, opened.folder), registry, overrides, source, opened)
 
 
-def _shown(path: Path) -> str:
-    """Return the path as short as it can be said from here."""
+def _shown(path: Path, folder: str) -> str:
+    """Return the path as short as it can be said from a folder, the current one if empty."""
     try:
-        return str(path.relative_to(Path.cwd()))
+        return str(path.relative_to(folder or Path.cwd()))
     except (ValueError, OSError):  # elsewhere, or here is a folder that was deleted
         return str(path)
 
@@ -175,17 +198,18 @@ def _build(
     declaration = declare(document)
     if document.problems and not declaration.nodes:
         raise PipelineError(_ordered(document.problems))
-    inside = opened._replace(within=(*opened.within, (declaration.name, Path(file).resolve())))
+    path = Path(opened.folder, file)
+    inside = opened._replace(within=(*opened.within, (declaration.name, path.resolve())))
 
     def load_inner(name: str, inner_overrides: Overrides) -> Graph:
-        return _load_inner(name, file, registry, inner_overrides, inside)
+        return _load_inner(name, str(path), registry, inner_overrides, inside)
 
     scope = Scope(declaration, registry, load_inner, overrides)
-    declaration.evolves = _parent(declaration.evolves, document, registry)
+    declaration.evolves = _parent(declaration.evolves, document, path, registry)
     graph = resolve(scope, source, embedded=bool(opened.within))
     if document.problems:
         raise PipelineError(_ordered(document.problems))
-    return graph
+    return replace(graph, folder=opened.folder or _current_folder())
 
 
 def _load_inner(
@@ -195,6 +219,8 @@ def _load_inner(
     if "/" in name and not name.endswith((".yaml", ".yml")):
         raise UsageError(f"{name!r}: a pipeline file ends in .yaml")
     found = beside(name, file) or name
+    if opened.folder and isinstance(found, str) and found.endswith((".yaml", ".yml")):
+        found = Path(opened.folder, found)
     names, files = [n for n, _ in opened.within], [p for _, p in opened.within]
     try:
         path = find(found, registry, file)
@@ -225,11 +251,11 @@ def _refuse_circle(names: list[str], opened: Sequence[object], again: object) ->
         raise UsageError(f"pipelines use each other in a circle: {loop}")
 
 
-def _parent(name: str, document: Document, registry: Registry) -> str:
+def _parent(name: str, document: Document, path: Path, registry: Registry) -> str:
     """Return the name of what a file's pipeline evolves from, as it is understood elsewhere too."""
     if not name:
         return name
-    if beside(name, document.file) is not None:
+    if beside(name, path) is not None:
         return name
     try:
         return registry.spelled("pipelines", name, document.file)
