@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from tactile_graph.errors import Mark, Problem, did_you_mean, one_of
-from tactile_graph.pipeline.conditions import compile_condition
+from tactile_graph.pipeline.conditions import compile_condition, without_comments
 from tactile_graph.pipeline.document import on_one_line
 from tactile_graph.pipeline.facts import ref_facts
 from tactile_graph.pipeline.plain import plain
@@ -18,6 +18,7 @@ from tactile_graph.pipeline.wiring import Ref
 def check_conditions(scope: Scope) -> None:
     """Report conditions that are wrong, used or not; a named one only where it stands."""
     named = scope.declaration.conditions
+    _check_comments(scope)
     errors: dict[str, ConditionError] = {}
     for name, text in named.items():
         try:
@@ -33,6 +34,18 @@ def check_conditions(scope: Scope) -> None:
         if wrong.named not in broken:
             what = f"node {node.name!r}, 'when': {wrong.message}"
             _condition_problem(scope, what, node.when or "", wrong, *node.path, "when")
+
+
+def _check_comments(scope: Scope) -> None:
+    """Report comments in conditions whose lines YAML has joined: nobody can tell where they end."""
+    declared = scope.declaration
+    found = [(f"condition {n!r}", t, ("conditions", n)) for n, t in declared.conditions.items()]
+    found += [(f"node {n.name!r}, 'when'", n.when or "", (*n.path, "when"))
+              for n in declared.nodes.values()]  # fmt: skip
+    for what, text, path in found:
+        if scope.document.joins_lines(*path) and without_comments(text) != text:
+            words = "a comment in it would swallow the lines below, which YAML joins to its own"
+            scope.document.problem(f"{what}: {words}; take it out, or write '|' for '>'", *path)
 
 
 def check_fields_read(scope: Scope) -> None:

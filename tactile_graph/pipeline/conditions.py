@@ -40,6 +40,10 @@ SIGNS = {
 }
 """What people write who think of another language -> what to write instead."""
 
+_TEXT_OR_COMMENT = re.compile(
+    r"""(?P<text>"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')|\#[^\n]*"""
+)
+
 _ALLOWED = (
     ast.Expression, ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd,
     ast.BinOp, ast.Add, ast.Sub, ast.Mult, ast.Div, ast.FloorDiv, ast.Mod,
@@ -107,9 +111,14 @@ def _settled(node: ast.expr, values: Mapping[str, str]) -> bool | None:
         return None
 
 
-def _one_line(text: str) -> str:
+def without_comments(text: str) -> str:
+    """Return the text with blanks in place of comments, each of which ends with its line."""
+    return _TEXT_OR_COMMENT.sub(lambda m: m["text"] or " " * len(m[0]), text)
+
+
+def one_line(text: str) -> str:
     """Return the text as one line: a YAML block keeps its line ends, Python minds them."""
-    return text.strip().replace("\n", " ")
+    return without_comments(text).strip().replace("\n", " ")
 
 
 def _short(value: Any) -> str:
@@ -126,7 +135,7 @@ def _short(value: Any) -> str:
 def names_in(text: str) -> set[str]:
     """Return the names at the root of a condition's references; empty if it cannot be parsed."""
     try:
-        tree = ast.parse(_one_line(text), mode="eval")
+        tree = ast.parse(one_line(text), mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return set()
     called = {id(n.func) for n in ast.walk(tree) if isinstance(n, ast.Call)}
@@ -170,7 +179,7 @@ def compile_condition(
         meaning = ast.unparse(tree)
         refs, groups = tuple(compiler.refs), tuple(compiler.groups)
         function = _function(meaning, len(refs), groups)
-        return Guard(" ".join(text.split()), refs, function, meaning, groups)
+        return Guard(" ".join(one_line(text).split()), refs, function, meaning, groups)
     except (RecursionError, MemoryError):
         raise ConditionError(f"nested deeper than {DEEPEST} levels") from None
 
@@ -213,8 +222,9 @@ class _Compiler:
         if len(text) > LONGEST or self.spelled > LONGEST_SPELLED:
             # Conditions that name each other twice over double with each name.
             raise ConditionError(f"longer than {LONGEST} characters")
+        text = one_line(text)
         try:
-            tree = ast.parse(_one_line(text), mode="eval")
+            tree = ast.parse(text, mode="eval")
         except SyntaxError as error:
             message = f"{shown(text)} is no condition: {error.msg}{_typo_hint(text)}"
             raise ConditionError(message, max(0, (error.offset or 1) - 1)) from None

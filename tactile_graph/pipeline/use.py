@@ -11,6 +11,7 @@ from tactile_graph.pipeline.declaration import NodeDeclaration
 from tactile_graph.pipeline.embed import (
     Embedding,
     Given,
+    field_of,
     given_troubles,
     inline_nodes,
     map_node,
@@ -27,7 +28,7 @@ def resolve_use(scope: Scope, declared: NodeDeclaration, guard: Guard | None) ->
     """Enter what a ``use`` stands for; what is wrong with it is reported in the scope."""
     inner = _inner(scope, declared)
     wired = None if inner is None else _inputs(scope, declared, inner)
-    if inner is None or wired is None:
+    if inner is None or wired is None or not _parts_outputs(scope, declared, inner):
         scope.add_unknown(declared.name)
         return
     frame = wired.pop(FRAME)
@@ -72,6 +73,19 @@ def _cannot_be_used(scope: Scope, declared: NodeDeclaration, text: str) -> None:
             scope.problem(declared, f", {name}: {text.removeprefix(mine)}", "with", name)
             return
     scope.problem(declared, f": pipeline {declared.use!r} cannot be used: {text}", "use")
+
+
+def _parts_outputs(scope: Scope, declared: NodeDeclaration, inner: Graph) -> bool:
+    """Return whether no two outputs have one name here, where dots are ``_``; else report them."""
+    found: dict[str, str] = {}
+    for output in inner.outputs:
+        other = found.setdefault(field_of(output), output)
+        if other != output:
+            what = f"outputs {other!r} and {output!r} of pipeline {declared.use!r}"
+            text = f": {what} would both be {declared.name}.{field_of(output)} here; rename a node"
+            scope.problem(declared, text, "use")
+            return False
+    return True
 
 
 def _inputs(scope: Scope, declared: NodeDeclaration, inner: Graph) -> dict[str, Given] | None:

@@ -102,6 +102,18 @@ def test_what_cannot_take_a_nodes_place_is_told_at_load(tmp_path: Path) -> None:
         assert told in str(caught.value)
 
 
+@pytest.mark.parametrize("more", ["", ", in: objects.contacts, each: true"])
+def test_two_outputs_that_would_have_one_name_are_told(tmp_path: Path, more: str) -> None:
+    both = OWN.replace("outputs: [sum]", "  cells_count: {step: load, in: frame}\n")
+    (tmp_path / "both.yaml").write_text(
+        both + "outputs: [cells_count, found, found.count, cells.count]"
+    )
+    nodes = f"  u: {{use: both.yaml{more}}}"
+    told = r"outputs 'cells_count' and 'cells.count' of .* would both be u.cells_count here"
+    with pytest.raises(PipelineError, match=told):
+        made(tmp_path, CONTACTS + nodes, "u.found")
+
+
 def test_a_pipeline_runs_for_each_item_of_several_lists(tmp_path: Path) -> None:
     nodes = CONTACTS + (
         "  masks: {step: wide, in: objects.contacts, each: true, with: {least: 20}}\n"
