@@ -133,6 +133,12 @@ def test_a_pipeline_with_a_registry_of_its_own_says_why_not() -> None:
     assert copy.copy(own) is own
 
 
+@pytest.mark.parametrize("way", WAYS)
+def test_a_runner_whose_steps_keep_state_is_not_copied(way: Callable[[Any], Any]) -> None:
+    with pytest.raises(UsageError, match=r"a runner is not to be copied .* runner\(\) makes a new"):
+        way(load("tracks").runner())
+
+
 class TwoWordsError(Exception):
     """Does not come back from a pickle: its one argument is not what it takes."""
 
