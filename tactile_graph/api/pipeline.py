@@ -167,6 +167,8 @@ class Pipeline(Graph):
         ------
         RuleError
             If the frame's quantity, shape or pitch breaks a rule of a step.
+        FrameError
+            If what is given makes no frame, as of `Frame.of`; it is a ValueError as well.
         UsageError
             If it is a path, or several frames.
         """
@@ -195,7 +197,8 @@ class Pipeline(Graph):
         Raises
         ------
         UsageError
-            If frames are a path, or one frame by itself.
+            If frames are a path, or one frame by itself. What makes no frame is told when it comes,
+            as of `run`.
         """
         from tactile_graph.api.results import Results
 

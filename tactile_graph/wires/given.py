@@ -6,40 +6,45 @@ import os
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from tactile_graph.errors import UsageError, one_of, shown
+from tactile_graph.errors import FrameError, UsageError, one_of, shown
+from tactile_graph.wires.checked import checked_image
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 
 WITH_SOURCE = "with_source('recording', path={path!r})"
 
 
-def as_frame(given: Any, index: int = 0) -> Frame:
+def as_frame(given: Any, index: int | None = None) -> Frame:
     """Return a frame as it is, or one around an image or a bare array.
 
     Parameters
     ----------
     given : Frame, Image or array, shape (rows, columns)
         A bare array becomes a frame of pitch 1 cm and quantity ``raw``.
-    index : int
-        Number of a frame that is made here.
+    index : int, optional
+        Number of a frame that is made here, and by which errors name it.
 
     Raises
     ------
     UsageError
         If it is a path or text, or several frames.
-    ValueError
-        As of `Frame.of`.
+    FrameError
+        Where `Frame.of` raises a ValueError.
     """
     if isinstance(given, Frame):
         return given
-    if isinstance(given, Image):
-        return Frame(given, index)
     if isinstance(given, str | bytes | os.PathLike):
         raise UsageError(f"a frame is needed, got {_told(given, WITH_SOURCE)}")
     if isinstance(given, list | tuple) and any(isinstance(one, Frame | Image) for one in given):
         kind = type(given).__name__
         raise UsageError(f"a frame is needed, got a {kind} of {len(given)}; stream() takes several")
-    return Frame.of(given, index=index)
+    try:
+        if isinstance(given, Image):
+            return Frame(checked_image(given), index or 0)
+        return Frame.of(given, index=index or 0)
+    except ValueError as error:
+        where = "" if index is None else f"frame {index}: "
+        raise FrameError(f"{where}{error}") from None
 
 
 def as_frames(given: Any, reading: str = WITH_SOURCE) -> Iterator[Frame]:
