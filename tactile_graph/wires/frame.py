@@ -145,6 +145,8 @@ def _real(values: NDArray[Any]) -> NDArray[np.float64]:
         raise ValueError("a frame takes bare values, got an Image; write Frame(image)")
     if isinstance(values, Mask):
         raise ValueError("a frame takes bare values, got a Mask; take its .values")
+    if isinstance(values, list | tuple) and any(isinstance(r, np.ma.MaskedArray) for r in values):
+        values = np.ma.array(values)
     given = np.asarray(values)
     if given.dtype.kind not in "biufO" or (given.dtype.kind == "O" and np.iscomplexobj(given)):
         raise ValueError(f"a frame takes real numbers, got {given.dtype.name}")

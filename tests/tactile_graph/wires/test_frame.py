@@ -194,5 +194,15 @@ def test_masked_cells_are_invalid_as_nan_cells_are(dtype: type) -> None:
     assert image.valid.tolist() == [[True, False], [True, True]]
     assert image.total == 8.0
     assert image.values[0, 1] == 0.0
+
+
+@pytest.mark.parametrize("dtype", [float, int, object])
+def test_masked_cells_of_rows_are_invalid_too(dtype: type) -> None:
+    masked = np.ma.masked_equal(np.array([[1, 65535], [3, 4]], dtype=dtype), 65535)
+    for rows in (list(masked), (masked[0], [3, 4])):
+        image = Frame.of(rows).image  # type: ignore[arg-type]
+        assert image.valid is not None
+        assert image.valid.tolist() == [[True, False], [True, True]]
+        assert image.values.tolist() == [[1.0, 0.0], [3.0, 4.0]]
     assert masked.data[0, 1] == 65535
     assert Frame.of(np.ma.array([[1.0, 2.0]])).image.valid is None
