@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from threading import get_ident
+from threading import local
 from typing import TYPE_CHECKING, Any
 
 from tactile_graph.errors import PipelineError, Problem, UsageError, one_of, shown
@@ -112,6 +112,13 @@ def loads(
         If both ``registry`` and ``steps`` are given, or steps are no mapping of names to functions.
     """
     return Pipeline.of(parse_graph(text, file, _registry(registry, steps)))
+
+
+class _Kept(local):
+    """The runners that each thread keeps: a runner serves one, and goes with it."""
+
+    def __init__(self) -> None:
+        self.runners: dict[tuple[tuple[str, ...], int], Runner[Result]] = {}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -302,9 +309,9 @@ class Pipeline(Graph):
         return Runner(self, _asked(only), Result, settings)
 
     def _runner(self, only: tuple[str, ...], seed: int) -> Runner[Result]:
-        """Return a fresh runner, or the last one where no step keeps state."""
-        kept: dict[Any, Runner[Result]] = self._kept
-        key = (only, seed, get_ident())  # a runner serves one thread
+        """Return a fresh runner, or the thread's last one where no step keeps state."""
+        kept = self._kept.runners
+        key = (only, seed)
         runner = kept.get(key)
         if runner is None or runner.stateful:
             runner = kept[key] = self.runner(only, seed)
@@ -313,8 +320,8 @@ class Pipeline(Graph):
         return runner
 
     @cached_property
-    def _kept(self) -> dict[Any, Runner[Result]]:
-        return {}
+    def _kept(self) -> _Kept:
+        return _Kept()
 
     @cached_property
     def promises(self) -> Promises:
