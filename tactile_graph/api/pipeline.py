@@ -9,6 +9,13 @@ from pathlib import Path
 from threading import local
 from typing import TYPE_CHECKING, Any
 
+from tactile_graph.api.arguments import (
+    checked_names,
+    checked_seed,
+    checked_settings,
+    checked_step,
+    checked_text,
+)
 from tactile_graph.errors import PipelineError, Problem, UsageError, one_of, shown
 from tactile_graph.pipeline.files_read import FilesRead
 from tactile_graph.pipeline.graph import FRAME, Graph
@@ -109,9 +116,10 @@ def loads(
     PipelineError
         With every problem of the text.
     UsageError
-        If both ``registry`` and ``steps`` are given, or steps are no mapping of names to functions.
+        If it is no text, both ``registry`` and ``steps`` are given, or steps are no mapping of
+        names to functions.
     """
-    return Pipeline.of(parse_graph(text, file, _registry(registry, steps)))
+    return Pipeline.of(parse_graph(checked_text(text), file, _registry(registry, steps)))
 
 
 class _Kept(local):
@@ -177,9 +185,9 @@ class Pipeline(Graph):
         FrameError
             If what is given makes no frame, as of `Frame.of`; it is a ValueError as well.
         UsageError
-            If it is a path, or several frames.
+            If it is a path, or several frames; if ``only`` or ``seed`` is of the wrong type.
         """
-        result = self._runner(_asked(only), seed)(as_frame(frame))
+        result = self._runner(checked_names(only), seed)(as_frame(frame))
         if self.promises.waiting:
             self.promises.check(result)
         return result
@@ -204,8 +212,8 @@ class Pipeline(Graph):
         Raises
         ------
         UsageError
-            If frames are a path, or one frame by itself. What makes no frame is told when it comes,
-            as of `run`.
+            As of `run`, and if frames are one frame by itself. What makes no frame is told when it
+            comes.
         """
         from tactile_graph.api.results import Results
 
@@ -216,7 +224,7 @@ class Pipeline(Graph):
 
     def live(
         self,
-        source: Iterable[Frame] | None = None,
+        source: Iterable[Frame | Image | NDArray[np.generic]] | None = None,
         only: Sequence[str] | None = None,
         seed: int = 0,
         deadline_us: float | None = None,
@@ -231,7 +239,7 @@ class Pipeline(Graph):
 
         Parameters
         ----------
-        source : iterable of Frame, optional
+        source : iterable of Frame, Image or ndarray, optional
             The pipeline's own source if not given. Read as fast as it gives frames: for a recording
             see `tactile_graph.live.paced`.
         only, seed
@@ -242,6 +250,11 @@ class Pipeline(Graph):
         capacity, unread : int
             How many frames may wait to be answered, and how many results to be taken, before the
             oldest go.
+
+        Raises
+        ------
+        UsageError
+            If ``source`` is a path, or nothing that has frames one after the other.
         """
         from tactile_graph.live.live_run import LiveRun
         from tactile_graph.live.live_stream import LiveStream
@@ -305,11 +318,12 @@ class Pipeline(Graph):
         from tactile_graph.api.result import Result
         from tactile_graph.engine.runner import Runner, RunSettings
 
-        settings = RunSettings(seed, verify, decider, after)
-        return Runner(self, _asked(only), Result, settings)
+        settings = RunSettings(checked_seed(seed), verify, decider, after)
+        return Runner(self, checked_names(only), Result, settings)
 
     def _runner(self, only: tuple[str, ...], seed: int) -> Runner[Result]:
         """Return a fresh runner, or the thread's last one where no step keeps state."""
+        seed = seed if seed.__class__ is int else checked_seed(seed)
         kept = self._kept.runners
         key = (only, seed)
         runner = kept.get(key)
@@ -353,7 +367,7 @@ class Pipeline(Graph):
             raise UsageError(f"pipeline {self.name!r} declares no source: give it frames")
         from tactile_graph.engine.calls.sources import open_source
 
-        return open_source(self.source, seed, report or Report(), in_stacks)
+        return open_source(self.source, checked_seed(seed), report or Report(), in_stacks)
 
     # -- variants ----------------------------------------------------------------------------
 
@@ -371,9 +385,11 @@ class Pipeline(Graph):
         ------
         PipelineError
             If a node, a setting or a value is not allowed.
+        UsageError
+            If settings are no mapping of texts.
         """
         overrides = {k: dict(v) for k, v in self.overrides.items()}
-        for name, value in settings.items():
+        for name, value in checked_settings(settings).items():
             node, dot, setting = name.rpartition(".")
             if not dot:
                 meant = [f"{n}.{name}" for n, node in self.nodes.items() if name in node.settings]
@@ -385,7 +401,7 @@ class Pipeline(Graph):
 
     def with_source(self, step: str, **settings: Any) -> Pipeline:
         """Return the pipeline with another source; rules about quantities are checked again."""
-        return self._again(self.overrides, (step, settings))
+        return self._again(self.overrides, (checked_step(step), settings))
 
     def _again(self, overrides: Overrides, source: SourceOverride) -> Pipeline:
         return Pipeline.of(resolve_again(self, overrides, source))
@@ -443,8 +459,3 @@ def _unpickled(
     files = files or FilesRead.here()
     pipeline = Pipeline.of(parse_again(text, file, None, overrides, source, files))
     return pipeline if with_source else replace(pipeline, source=None)
-
-
-def _asked(only: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the names asked for; one by itself is no sequence of letters."""
-    return (only,) if isinstance(only, str) else tuple(only or ())

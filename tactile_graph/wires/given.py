@@ -62,6 +62,16 @@ def as_frames(given: Any, reading: str = WITH_SOURCE) -> Iterator[Frame]:
     UsageError
         If it is one frame, a path, or nothing that has frames one after the other.
     """
+    check_frames(given, reading)
+    try:
+        frames = iter(given)
+    except TypeError:
+        raise UsageError(f"frames are needed, got {type(given).__name__}") from None
+    return (as_frame(frame, index) for index, frame in enumerate(frames))
+
+
+def check_frames(given: Any, reading: str = WITH_SOURCE) -> None:
+    """Refuse what has no frames one after the other; parameters and errors as of `as_frames`."""
     kind = type(given).__name__
     if isinstance(given, str | bytes | os.PathLike):
         raise UsageError(f"frames are needed, got {_told(given, reading)}")
@@ -70,11 +80,8 @@ def as_frames(given: Any, reading: str = WITH_SOURCE) -> Iterator[Frame]:
         raise UsageError(f"frames are needed, got a {kind}: give one of its values{names}")
     if isinstance(given, Frame | Image) or getattr(given, "ndim", None) == 2:
         raise UsageError(f"frames are needed, got one {kind}: a list of it is a stream of one")
-    try:
-        frames = iter(given)
-    except TypeError:
-        raise UsageError(f"frames are needed, got {kind}") from None
-    return (as_frame(frame, index) for index, frame in enumerate(frames))
+    if not (hasattr(given, "__iter__") or hasattr(given, "__getitem__")):
+        raise UsageError(f"frames are needed, got {kind}")
 
 
 def _told(path: str | bytes | os.PathLike[Any], reading: str) -> str:

@@ -9,11 +9,12 @@ from collections.abc import Callable, Iterator
 from threading import Event
 from typing import Any
 
+import numpy as np
 import pytest
 
 from helpers_graphs import STEPS, frame, registry
 from tactile_graph import Frame, Pipeline, loads
-from tactile_graph.errors import PipelineError, UsageError
+from tactile_graph.errors import FrameError, PipelineError, UsageError
 from tactile_graph.live import LiveRun, paced
 from tactile_graph.live.waiting import Arrival, Waiting
 from tactile_graph.steps import Report
@@ -314,6 +315,19 @@ def test_what_the_source_raises_is_raised_by_async_for() -> None:
         stream = pipeline().live(broken())
         assert [(await anext(stream)).result["more"] for _ in range(2)] == [1, 2]
         with pytest.raises(OSError, match="unplugged"):
+            await anext(stream)
+
+    asyncio.run(answers())
+
+
+def test_arrays_are_frames_and_what_makes_none_is_told_by_its_number() -> None:
+    async def answers() -> None:
+        given = [np.full((2, 2), 3.0), frame(4, 7), np.ones(3)]
+        stream = pipeline().live(given)  # type: ignore[arg-type]
+        taken = [await anext(stream) for _ in range(2)]
+        assert [live.result["more"] for live in taken] == [4, 5]
+        assert [live.result.frame.index for live in taken] == [0, 7]
+        with pytest.raises(FrameError, match="frame 2: a frame takes values of shape"):
             await anext(stream)
 
     asyncio.run(answers())
