@@ -200,7 +200,8 @@ class Pipeline(Graph):
     ) -> Results:
         """Return the results of the frames, in order, as they are taken; stateful steps keep state.
 
-        Frames of another label (of another recording or sensor) find none of it.
+        Frames of another label (of another recording or sensor) find none of it. Where a loop over
+        them may end early, ``with pipeline.stream() as results`` closes the source.
 
         Parameters
         ----------
@@ -220,7 +221,8 @@ class Pipeline(Graph):
         runner = self.runner(only, seed)
         asked = tuple(runner.plan.asked)
         given = self.frames(seed) if frames is None else as_frames(frames)
-        return Results(self, asked, self.results(given, runner))
+        source = given if frames is None else frames
+        return Results(self, asked, self.results(given, runner), source)
 
     def live(
         self,
