@@ -232,6 +232,7 @@ class Pipeline(Graph):
         deadline_us: float | None = None,
         capacity: int = 64,
         unread: int = 1024,
+        report: Report | None = None,
     ) -> LiveStream[Result]:
         """Return the results of frames as these come, for ``async for``; it may be closed early.
 
@@ -252,6 +253,9 @@ class Pipeline(Graph):
         capacity, unread : int
             How many frames may wait to be answered, and how many results to be taken, before the
             oldest go.
+        report : Report, optional
+            Its ``wanted`` is false once the stream is closed. A generator is closed at the frame it
+            gives next: one that waits (for a queue, a socket) looks at it now and then, and ends.
 
         Raises
         ------
@@ -262,8 +266,9 @@ class Pipeline(Graph):
         from tactile_graph.live.live_stream import LiveStream
 
         run = LiveRun(
-            self, source, only=only, seed=seed, deadline_us=deadline_us, capacity=capacity
-        )
+            self, source, only=only, seed=seed, deadline_us=deadline_us, capacity=capacity,
+            report=report,
+        )  # fmt: skip
         return LiveStream(run, unread)
 
     def results(

@@ -88,7 +88,9 @@ class LiveRun(Generic[ResultT]):
     capacity : int
         How many frames may wait.
     report : Report, optional
-        Receives what the pipeline's own source has to say.
+        Receives what the pipeline's own source has to say. Its ``wanted`` is false once the run is
+        stopped: a source that waits for something looks there now and then, and ends; it is closed
+        no sooner than at its next frame.
     clock : callable
         Nanoseconds now.
     """

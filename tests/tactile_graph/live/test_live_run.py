@@ -6,6 +6,8 @@ import asyncio
 import itertools
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
+from queue import Empty, Queue
 from threading import Event
 from typing import Any
 
@@ -318,6 +320,27 @@ def test_what_the_source_raises_is_raised_by_async_for() -> None:
             await anext(stream)
 
     asyncio.run(answers())
+
+
+def test_a_source_that_waits_for_a_queue_ends_when_its_stream_is_closed() -> None:
+    given: Queue[Frame] = Queue()
+    report, closed = Report(), Event()
+
+    def source() -> Iterator[Frame]:
+        try:
+            while report.wanted:
+                with suppress(Empty):
+                    yield given.get(timeout=0.01)
+        finally:
+            closed.set()
+
+    async def first() -> None:
+        given.put(frame(1, 0))
+        async with pipeline().live(source(), report=report) as stream:
+            assert (await anext(stream)).result["more"] == 2
+
+    asyncio.run(first())
+    assert closed.wait(5)
 
 
 def test_arrays_are_frames_and_what_makes_none_is_told_by_its_number() -> None:
