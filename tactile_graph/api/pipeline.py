@@ -317,6 +317,8 @@ class Pipeline(Graph):
     ) -> Runner[Result]:
         """Return a callable of frames that keeps state, for loops of your own.
 
+        It does not hold what steps give against what they promise, as `run` and `stream` do.
+
         With ``verify`` a step fails that writes into what others read; this costs time. A
         ``decider`` says for each frame what is left undone: a `tactile_graph.live.Deadline`, or
         what was `tactile_graph.live.Recorded` of one. Where it comes ``after`` a runner of the same
