@@ -156,8 +156,11 @@ def _no_list(left: ast.expr, right: ast.expr, operator: ast.cmpop, reading: Read
     if isinstance(right, ast.Tuple | ast.List):
         always = "true" if isinstance(operator, ast.NotIn) else "false"
         return "" if right.elts else f"nothing is in an empty list: this is always {always}"
+    if isinstance(right, ast.Constant) and isinstance(right.value, str):
+        text = ast.unparse(right)
+        return f"'in' looks into a list, and {text} is a text; a list is written ({text},)"
     kind = reading.kind(right)
-    number = isinstance(right, ast.Constant) and not isinstance(right.value, str)
+    number = isinstance(right, ast.Constant)
     scalar = kind is not None and all(
         is_scalar(arm) and sort_of(arm) == "number" and list_item(arm) is None for arm in arms(kind)
     )
