@@ -435,5 +435,5 @@ def _unpickled(
 
 
 def _asked(only: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the names asked for; one by itself is no sequence of letters."""
-    return (only,) if isinstance(only, str) else tuple(only or ())
+    """Return the names asked for, each once; one by itself is no sequence of letters."""
+    return (only,) if isinstance(only, str) else tuple(dict.fromkeys(only or ()))

@@ -145,7 +145,7 @@ def run(
         _check_divided(lines, plot, decisions)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
     check_targets((("-o", lines.name if lines else None), ("--plot", plot)), [opened])
-    one = _Run(opened, tuple(only), span, seed, lines, plot, verify, decisions)
+    one = _Run(opened, tuple(dict.fromkeys(only)), span, seed, lines, plot, verify, decisions)
     if divided:
         one.divided(workers, on, resume)
     one.go()

@@ -374,6 +374,15 @@ def test_all_mistakes_of_a_file_are_shown_with_place_and_snippet(tmp_path):
     assert "2 problems" in got.stderr
 
 
+def test_what_is_asked_for_twice_is_told_and_counted_once():
+    twice = ("--only", "circle", "--only", "circle")
+    once, again = (call("run", "discs", *asked).stdout for asked in (twice[:2], twice))
+    assert [line.split("frames in")[0] for line in again.splitlines()] == [
+        line.split("frames in")[0] for line in once.splitlines()
+    ]
+    assert [*load("discs").runner(["circle", "circle"]).plan.asked] == ["circle"]
+
+
 def test_only_asks_for_nodes_and_fields_instead_of_the_outputs():
     got = call("run", "discs", "--only", "footprint.count", "--only", "footprint", "-o", "-")
     first = lines(got.stdout)[0]
