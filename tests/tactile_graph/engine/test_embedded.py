@@ -102,6 +102,14 @@ def test_what_cannot_take_a_nodes_place_is_told_at_load(tmp_path: Path) -> None:
         assert told in str(caught.value)
 
 
+def test_a_setting_from_outside_of_a_node_that_does_not_run_is_refused(tmp_path: Path) -> None:
+    pipeline = made(tmp_path, ALL + "  u: {use: inner.yaml, in: {opened: all}}")
+    for name, why in (("opened.element", "'in' takes its place"), ("footprint.level", "nothing")):
+        told = f"setting u/{name}: '{name.partition('.')[0]}' does not run: {why}"
+        with pytest.raises(PipelineError, match=told):
+            pipeline.with_settings({f"u/{name}": "square3" if "element" in name else 1})
+
+
 @pytest.mark.parametrize("more", ["", ", in: objects.contacts, each: true"])
 def test_two_outputs_that_would_have_one_name_are_told(tmp_path: Path, more: str) -> None:
     both = OWN.replace("outputs: [sum]", "  cells_count: {step: load, in: frame}\n")
