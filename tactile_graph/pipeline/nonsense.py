@@ -63,6 +63,18 @@ def no_arithmetic(node: ast.BinOp, reading: Reading) -> str:
     return ""
 
 
+def no_call(name: str, given: list[ast.expr], reading: Reading) -> str:
+    """Return why a function cannot be told of what it is given; "" where it may be."""
+    sort, spelled = _sort(given[0], reading), reading.spell(given[0])
+    if name == "len" and sort == "number":
+        return f"len() counts the items of a list, and {spelled} is a number"
+    if name == "abs" and sort == "text":
+        return f"abs() takes a number, and {spelled} is a text"
+    if name in ("max", "min") and len(given) == 1 and sort == "number":
+        return f"{name}() takes several numbers, or a list of them, and {spelled} is one number"
+    return ""
+
+
 def nonsense(node: ast.Compare, reading: Reading) -> str:
     """Return why a comparison never tells frames apart; "" where it may."""
     if not any(True for _ in _read(node)):
