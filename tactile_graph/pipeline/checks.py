@@ -43,8 +43,10 @@ def _check_comments(scope: Scope) -> None:
         (f"condition {name!r}", text, ("conditions", name))
         for name, text in declared.conditions.items()
     ]
-    for node in declared.nodes.values():
-        found.append((f"node {node.name!r}, 'when'", node.when or "", (*node.path, "when")))
+    found += [
+        (f"node {node.name!r}, 'when'", node.when or "", (*node.path, "when"))
+        for node in declared.nodes.values()
+    ]
     for what, text, path in found:
         if scope.document.joins_lines(*path) and without_comments(text) != text:
             words = "a comment in it would swallow the lines below, which YAML joins to its own"

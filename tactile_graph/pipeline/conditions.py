@@ -41,12 +41,10 @@ SIGNS = {
 }
 """What people write who think of another language -> what to write instead."""
 
-_ITS_OWN_WORDS = ("and", "or", "not", "in", "is", "if", "else")
+_ITS_OWN_WORDS = ("and", "or", "not", "in", "is", "if", "else", "True", "False", "None")
 """Words of Python that conditions have, or of which something else is told."""
 
-_TEXT_OR_COMMENT = re.compile(
-    r"""(?P<text>"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')|\#[^\n]*"""
-)
+_TEXT_OR_COMMENT = re.compile(r"""(?P<text>"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')|\#[^\n]*""")
 
 _ALLOWED = (
     ast.Expression, ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd,
@@ -400,9 +398,11 @@ class _Compiler:
 def _typo_hint(text: str) -> str:
     """Return what other languages' signs are here."""
     hints = [hint for sign, hint in SIGNS.items() if re.search(sign, text)]
-    for word in re.findall(r"[a-z]+", _TEXT_OR_COMMENT.sub("", text)):
-        if iskeyword(word) and word not in _ITS_OWN_WORDS:
-            hints.append(f"{word!r} is a word of Python: a condition can read nothing of that name")
+    hints += [
+        f"{word!r} is a word of Python: a condition can read nothing of that name"
+        for word in re.findall(r"\w+", _TEXT_OR_COMMENT.sub("", text))
+        if iskeyword(word) and word not in _ITS_OWN_WORDS
+    ]
     return "".join(f"; {hint}" for hint in dict.fromkeys(hints))
 
 

@@ -71,7 +71,7 @@ def holds(text: str, named: dict[str, str] | None = None) -> bool:
         ("abs(b - a) > 2.4", True),
         ("found.names", True),
         (" a\n  > 2 ", True),
-        ("a > 2  # so\nand b > 1  # \"not\"\n", False),
+        ('a > 2  # so\nand b > 1  # "not"\n', False),
         ("text == 'on#' or text == \"#\" or a > 3#", False),
     ],
 )
@@ -112,7 +112,7 @@ def test_a_text_is_not_compared_with_a_number() -> None:
         ("(a > 2, b) and a", "this is a list, which is always true"),
         ("a in 3", r"'in' looks into a list, and 3 is a number; a list is written \(3,\)"),
         ("a in (3)", r"'in' looks into a list, and 3 is a number"),
-        ("len(found.count) > 1", r"len\(\) counts the items of a list, and found.count is a number"),
+        ("len(found.count) > 1", r"len\(\) counts the items of a list, and found.count is"),
         ("abs(text) > 1", r"abs\(\) takes a number, and text is a text"),
         ("max(b) > 1", r"max\(\) takes several numbers, or a list of them, and b is one number"),
         ("class.count > 1", "'class' is a word of Python: a condition can read nothing of that"),
