@@ -9,8 +9,7 @@ from typing import Any
 
 from tactile_graph import Pipeline, load
 from tactile_graph.errors import PipelineError, UsageError, did_you_mean, one_of
-from tactile_graph.inspect import Graph, plain
-from tactile_graph.pipeline.idle import idle_settings
+from tactile_graph.inspect import Graph, idle_settings, plain
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph_compare.variants.request import VariantRequest, as_yaml, spelled
 from tactile_graph_compare.variants.sweeps import Sweep, combinations
