@@ -7,7 +7,7 @@ from typing import Any
 
 from tactile_graph.errors import Mark, Problem, did_you_mean, one_of
 from tactile_graph.pipeline.conditions import compile_condition, without_comments
-from tactile_graph.pipeline.document import on_one_line
+from tactile_graph.pipeline.document import Path, on_one_line
 from tactile_graph.pipeline.facts import ref_facts
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.references import ConditionError
@@ -39,9 +39,14 @@ def check_conditions(scope: Scope) -> None:
 def _check_comments(scope: Scope) -> None:
     """Report comments in conditions whose lines YAML has joined: nobody can tell where they end."""
     declared = scope.declaration
-    found = [(f"condition {n!r}", t, ("conditions", n)) for n, t in declared.conditions.items()]
-    found += [(f"node {n.name!r}, 'when'", n.when or "", (*n.path, "when"))
-              for n in declared.nodes.values()]  # fmt: skip
+    found: list[tuple[str, str, Path]] = [
+        (f"condition {name!r}", text, ("conditions", name))
+        for name, text in declared.conditions.items()
+    ]
+    found += [
+        (f"node {node.name!r}, 'when'", node.when or "", (*node.path, "when"))
+        for node in declared.nodes.values()
+    ]
     for what, text, path in found:
         if scope.document.joins_lines(*path) and without_comments(text) != text:
             words = "a comment in it would swallow the lines below, which YAML joins to its own"

@@ -6,13 +6,14 @@ import ast
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
 from dataclasses import dataclass
+from keyword import iskeyword
 from typing import Any
 
 import numpy as np
 
 from tactile_graph.errors import one_of, shown
 from tactile_graph.pipeline.comparable import fields_hint, is_scalar
-from tactile_graph.pipeline.nonsense import FUNCTIONS, no_arithmetic, no_truth, nonsense
+from tactile_graph.pipeline.nonsense import FUNCTIONS, no_arithmetic, no_call, no_truth, nonsense
 from tactile_graph.pipeline.over_items import OVER_ITEMS, resolve_of_items, spelled_out
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import Ref, arms
@@ -40,9 +41,10 @@ SIGNS = {
 }
 """What people write who think of another language -> what to write instead."""
 
-_TEXT_OR_COMMENT = re.compile(
-    r"""(?P<text>"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')|\#[^\n]*"""
-)
+_ITS_OWN_WORDS = ("and", "or", "not", "in", "is", "if", "else", "True", "False", "None")
+"""Words of Python that conditions have, or of which something else is told."""
+
+_TEXT_OR_COMMENT = re.compile(r"""(?P<text>"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')|\#[^\n]*""")
 
 _ALLOWED = (
     ast.Expression, ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd,
@@ -297,6 +299,9 @@ class _Compiler:
         node.args = [self.rewrite(a, within) for a in node.args]
         if not node.args or (name in ("len", "abs") and len(node.args) != 1):
             raise ConditionError(f"{name}() takes one argument", node.col_offset)
+        words = no_call(name, node.args, self)
+        if words:
+            raise ConditionError(words, node.col_offset)
         return node
 
     def over_items(self, node: ast.Call, name: str, within: tuple[str, ...]) -> ast.expr:
@@ -392,7 +397,13 @@ class _Compiler:
 
 def _typo_hint(text: str) -> str:
     """Return what other languages' signs are here."""
-    return "".join(f"; {hint}" for sign, hint in SIGNS.items() if re.search(sign, text))
+    hints = [hint for sign, hint in SIGNS.items() if re.search(sign, text)]
+    hints += [
+        f"{word!r} is a word of Python: a condition can read nothing of that name"
+        for word in re.findall(r"\w+", _TEXT_OR_COMMENT.sub("", text))
+        if iskeyword(word) and word not in _ITS_OWN_WORDS
+    ]
+    return "".join(f"; {hint}" for hint in dict.fromkeys(hints))
 
 
 def _chain(node: ast.expr) -> tuple[str, ...] | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
@@ -288,14 +288,19 @@ class Graph:
     @cached_property
     def unused(self) -> list[str]:
         """Nodes that no output needs; they run only when asked for."""
+        needed = self.needed(self.outputs.values())
+        return [n for n in self.nodes if n not in needed and not self.nodes[n].is_sink]
+
+    def needed(self, asked: Iterable[Ref]) -> set[str]:
+        """Return the nodes that what is asked for may need."""
         needed: set[str] = set()
-        waiting = [r.node for r in self.outputs.values()]
+        waiting = [r.node for r in asked]
         while waiting:
             name = waiting.pop()
             if name not in needed and name in self.nodes:
                 needed.add(name)
                 waiting += [r.node for r in self.nodes[name].wires()]
-        return [n for n in self.nodes if n not in needed and not self.nodes[n].is_sink]
+        return needed
 
     def resolved(self) -> dict[str, Any]:
         """Return the graph as plain data with every setting spelled out, as provenance keeps it."""

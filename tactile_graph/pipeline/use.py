@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from tactile_graph.errors import PipelineError, TactileGraphError, did_you_mean, one_of
+from tactile_graph.errors import PipelineError, Problem, TactileGraphError, did_you_mean, one_of
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.declaration import NodeDeclaration
 from tactile_graph.pipeline.embed import (
@@ -124,11 +124,21 @@ def _check_given(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embe
     for name, what in given_troubles(inner, at):
         scope.problem(declared, f": {what}", "in", name)
     gone = replaced_nodes(inner, at.given)
+
+    def why_idle(node: str) -> str:
+        if node not in gone:
+            return ""
+        which = "'in' takes its place" if node in at.given else "nothing needs it here"
+        return f"{node!r} does not run: {which}"
+
     for setting in declared.settings:
-        node = setting.rpartition(".")[0]
-        if node in gone:
-            which = "'in' takes its place" if node in at.given else "nothing needs it here"
-            scope.problem(declared, f", {setting}: {node!r} does not run: {which}", "with", setting)
+        if why := why_idle(setting.rpartition(".")[0]):
+            scope.problem(declared, f", {setting}: {why}", "with", setting)
+    for name, settings in scope.overrides.items():
+        head, _, node = name.partition("/")
+        if head == declared.name and (why := why_idle(node.partition("/")[0])):
+            told = f"setting {name}.{next(iter(settings), '')}: {why}"
+            scope.document.problems.append(Problem(None, told))
 
 
 def _map(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embedding) -> None:
