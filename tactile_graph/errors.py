@@ -51,6 +51,10 @@ class UsageError(TactileGraphError):
     """A call or a command line that asks for something that is not there."""
 
 
+class FrameError(UsageError, ValueError):
+    """Something handed in as a frame that makes none."""
+
+
 class PluginError(TactileGraphError):
     """A plugin that breaks the rules of the house, named by plugin and package."""
 

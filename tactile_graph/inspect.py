@@ -4,7 +4,8 @@ A plugin's steps need none of this. What compares, audits, tunes or explains pip
 
 - the graph: `Graph`, `Node`, `NodeKind`, `Guard`, `Ref`, `Source`, and the frame's own name in it
   (`FRAME`); types along its wires (`arms`, `field_type`, `public_fields`); settings as plain data
-  (`plain`) and digests of it (`node_key`);
+  (`plain`), digests of it (`node_key`) and what of them changes nothing (`idle_settings`);
+  a condition's text without line ends and comments (`one_line`);
 - the plan of a demand (`make_plan`, `Plan`), what it needs of a frame (`check_frame`), and its
   `Runner`;
 - outcomes: `Skipped`, `Failed`, `Done`, `NO_VALUE`, `NOT_ASKED`, the items of a
@@ -34,8 +35,9 @@ from tactile_graph.engine.runner import Runner, check_frame
 from tactile_graph.engine.tables.rows import as_data, scalars, without_nan
 from tactile_graph.engine.tables.table import Table, make_table
 from tactile_graph.engine.tables.truth import measures_of, shape_kind
-from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.conditions import Guard, one_line
 from tactile_graph.pipeline.graph import FRAME, Graph, Node, NodeKind, Source, node_key
+from tactile_graph.pipeline.idle import idle_settings
 from tactile_graph.pipeline.moved import moved, named_from
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.wiring import Ref, arms, field_type, public_fields
@@ -64,12 +66,14 @@ __all__ = [
     "check_frame",
     "field_type",
     "gaps",
+    "idle_settings",
     "make_plan",
     "make_table",
     "measures_of",
     "moved",
     "named_from",
     "node_key",
+    "one_line",
     "plain",
     "public_fields",
     "scalars",

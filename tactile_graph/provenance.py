@@ -68,7 +68,7 @@ def _sha256(text: str) -> str:
 def used_plugins(pipeline: Graph, registry: Registry) -> Iterator[Plugin]:
     """Yield the plugins that the pipeline, its source and its steps come from."""
     offers = (registry.offer("pipelines", name) for name in registry.names("pipelines"))
-    own = os.path.abspath(pipeline.file)
+    own = os.path.abspath(pipeline.files.place(pipeline.file))
     yield from (o.plugin for o in offers if os.path.abspath(o.target) == own)
     if pipeline.source is not None:
         yield registry.offer("steps", pipeline.source.name).plugin

@@ -6,12 +6,20 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from threading import get_ident
+from threading import local
 from typing import TYPE_CHECKING, Any
 
+from tactile_graph.api.arguments import (
+    checked_names,
+    checked_seed,
+    checked_settings,
+    checked_step,
+    checked_text,
+)
 from tactile_graph.errors import PipelineError, Problem, UsageError, one_of, shown
+from tactile_graph.pipeline.files_read import FilesRead
 from tactile_graph.pipeline.graph import FRAME, Graph
-from tactile_graph.pipeline.load import load_graph, parse_graph, resolve_again
+from tactile_graph.pipeline.load import load_graph, parse_again, parse_graph, resolve_again
 from tactile_graph.pipeline.resolve import SourceOverride
 from tactile_graph.pipeline.scope import Overrides
 from tactile_graph.plugins.registry import Registry, installed, installed_and
@@ -108,9 +116,17 @@ def loads(
     PipelineError
         With every problem of the text.
     UsageError
-        If both ``registry`` and ``steps`` are given, or steps are no mapping of names to functions.
+        If it is no text, both ``registry`` and ``steps`` are given, or steps are no mapping of
+        names to functions.
     """
-    return Pipeline.of(parse_graph(text, file, _registry(registry, steps)))
+    return Pipeline.of(parse_graph(checked_text(text), file, _registry(registry, steps)))
+
+
+class _Kept(local):
+    """The runners that each thread keeps: a runner serves one, and goes with it."""
+
+    def __init__(self) -> None:
+        self.runners: dict[tuple[tuple[str, ...], int], Runner[Result]] = {}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -129,7 +145,7 @@ class Pipeline(Graph):
         return self
 
     def __reduce__(self) -> tuple[Callable[..., Pipeline], tuple[Any, ...]]:
-        """Pickle by text, settings and source: another process resolves them by its own plugins.
+        """Pickle by texts, settings and source: another process resolves them by its own plugins.
 
         Raises
         ------
@@ -141,7 +157,7 @@ class Pipeline(Graph):
                 f"pipeline {self.name!r} has a registry of its own, or steps: not to be pickled"
             )
         given = (self.text, self.file, dict(self.overrides), self.source_override)
-        return _unpickled, (*given, self.source is not None)
+        return _unpickled, (*given, self.source is not None, self.files)
 
     # -- running -----------------------------------------------------------------------------
 
@@ -166,10 +182,12 @@ class Pipeline(Graph):
         ------
         RuleError
             If the frame's quantity, shape or pitch breaks a rule of a step.
+        FrameError
+            If what is given makes no frame, as of `Frame.of`; it is a ValueError as well.
         UsageError
-            If it is a path, or several frames.
+            If it is a path, or several frames; if ``only`` or ``seed`` is of the wrong type.
         """
-        result = self._runner(_asked(only), seed)(as_frame(frame))
+        result = self._runner(checked_names(only), seed)(as_frame(frame))
         if self.promises.waiting:
             self.promises.check(result)
         return result
@@ -182,7 +200,8 @@ class Pipeline(Graph):
     ) -> Results:
         """Return the results of the frames, in order, as they are taken; stateful steps keep state.
 
-        Frames of another label (of another recording or sensor) find none of it.
+        Frames of another label (of another recording or sensor) find none of it. Where a loop over
+        them may end early, ``with pipeline.stream() as results`` closes the source.
 
         Parameters
         ----------
@@ -194,23 +213,26 @@ class Pipeline(Graph):
         Raises
         ------
         UsageError
-            If frames are a path, or one frame by itself.
+            As of `run`, and if frames are one frame by itself. What makes no frame is told when it
+            comes.
         """
         from tactile_graph.api.results import Results
 
         runner = self.runner(only, seed)
         asked = tuple(runner.plan.asked)
         given = self.frames(seed) if frames is None else as_frames(frames)
-        return Results(self, asked, self.results(given, runner))
+        source = given if frames is None else frames
+        return Results(self, asked, self.results(given, runner), source)
 
     def live(
         self,
-        source: Iterable[Frame] | None = None,
+        source: Iterable[Frame | Image | NDArray[np.generic]] | None = None,
         only: Sequence[str] | None = None,
         seed: int = 0,
         deadline_us: float | None = None,
         capacity: int = 64,
         unread: int = 1024,
+        report: Report | None = None,
     ) -> LiveStream[Result]:
         """Return the results of frames as these come, for ``async for``; it may be closed early.
 
@@ -220,7 +242,7 @@ class Pipeline(Graph):
 
         Parameters
         ----------
-        source : iterable of Frame, optional
+        source : iterable of Frame, Image or ndarray, optional
             The pipeline's own source if not given. Read as fast as it gives frames: for a recording
             see `tactile_graph.live.paced`.
         only, seed
@@ -231,13 +253,22 @@ class Pipeline(Graph):
         capacity, unread : int
             How many frames may wait to be answered, and how many results to be taken, before the
             oldest go.
+        report : Report, optional
+            Its ``wanted`` is false once the stream is closed. A generator is closed at the frame it
+            gives next: one that waits (for a queue, a socket) looks at it now and then, and ends.
+
+        Raises
+        ------
+        UsageError
+            If ``source`` is a path, or nothing that has frames one after the other.
         """
         from tactile_graph.live.live_run import LiveRun
         from tactile_graph.live.live_stream import LiveStream
 
         run = LiveRun(
-            self, source, only=only, seed=seed, deadline_us=deadline_us, capacity=capacity
-        )
+            self, source, only=only, seed=seed, deadline_us=deadline_us, capacity=capacity,
+            report=report,
+        )  # fmt: skip
         return LiveStream(run, unread)
 
     def results(
@@ -286,6 +317,8 @@ class Pipeline(Graph):
     ) -> Runner[Result]:
         """Return a callable of frames that keeps state, for loops of your own.
 
+        It does not hold what steps give against what they promise, as `run` and `stream` do.
+
         With ``verify`` a step fails that writes into what others read; this costs time. A
         ``decider`` says for each frame what is left undone: a `tactile_graph.live.Deadline`, or
         what was `tactile_graph.live.Recorded` of one. Where it comes ``after`` a runner of the same
@@ -294,13 +327,14 @@ class Pipeline(Graph):
         from tactile_graph.api.result import Result
         from tactile_graph.engine.runner import Runner, RunSettings
 
-        settings = RunSettings(seed, verify, decider, after)
-        return Runner(self, _asked(only), Result, settings)
+        settings = RunSettings(checked_seed(seed), verify, decider, after)
+        return Runner(self, checked_names(only), Result, settings)
 
     def _runner(self, only: tuple[str, ...], seed: int) -> Runner[Result]:
-        """Return a fresh runner, or the last one where no step keeps state."""
-        kept: dict[Any, Runner[Result]] = self._kept
-        key = (only, seed, get_ident())  # a runner serves one thread
+        """Return a fresh runner, or the thread's last one where no step keeps state."""
+        seed = seed if seed.__class__ is int else checked_seed(seed)
+        kept = self._kept.runners
+        key = (only, seed)
         runner = kept.get(key)
         if runner is None or runner.stateful:
             runner = kept[key] = self.runner(only, seed)
@@ -309,8 +343,8 @@ class Pipeline(Graph):
         return runner
 
     @cached_property
-    def _kept(self) -> dict[Any, Runner[Result]]:
-        return {}
+    def _kept(self) -> _Kept:
+        return _Kept()
 
     @cached_property
     def promises(self) -> Promises:
@@ -342,7 +376,7 @@ class Pipeline(Graph):
             raise UsageError(f"pipeline {self.name!r} declares no source: give it frames")
         from tactile_graph.engine.calls.sources import open_source
 
-        return open_source(self.source, seed, report or Report(), in_stacks)
+        return open_source(self.source, checked_seed(seed), report or Report(), in_stacks)
 
     # -- variants ----------------------------------------------------------------------------
 
@@ -360,9 +394,11 @@ class Pipeline(Graph):
         ------
         PipelineError
             If a node, a setting or a value is not allowed.
+        UsageError
+            If settings are no mapping of texts.
         """
         overrides = {k: dict(v) for k, v in self.overrides.items()}
-        for name, value in settings.items():
+        for name, value in checked_settings(settings).items():
             node, dot, setting = name.rpartition(".")
             if not dot:
                 meant = [f"{n}.{name}" for n, node in self.nodes.items() if name in node.settings]
@@ -374,7 +410,7 @@ class Pipeline(Graph):
 
     def with_source(self, step: str, **settings: Any) -> Pipeline:
         """Return the pipeline with another source; rules about quantities are checked again."""
-        return self._again(self.overrides, (step, settings))
+        return self._again(self.overrides, (checked_step(step), settings))
 
     def _again(self, overrides: Overrides, source: SourceOverride) -> Pipeline:
         return Pipeline.of(resolve_again(self, overrides, source))
@@ -422,12 +458,13 @@ class Pipeline(Graph):
 
 
 def _unpickled(
-    text: str, file: str, overrides: Overrides, source: SourceOverride, with_source: bool = True
+    text: str,
+    file: str,
+    overrides: Overrides,
+    source: SourceOverride,
+    with_source: bool = True,
+    files: FilesRead | None = None,
 ) -> Pipeline:
-    pipeline = Pipeline.of(resolve_again(parse_graph(text, file), overrides, source))
+    files = files or FilesRead.here()
+    pipeline = Pipeline.of(parse_again(text, file, None, overrides, source, files))
     return pipeline if with_source else replace(pipeline, source=None)
-
-
-def _asked(only: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the names asked for; one by itself is no sequence of letters."""
-    return (only,) if isinstance(only, str) else tuple(only or ())

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Generator, Iterable, Iterator
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -20,18 +20,30 @@ MISSING = "to_pandas needs pandas, which is not installed: pip install pandas"
 class Results(Iterator[Result]):
     """The results of a stream of frames; each is computed when it is taken.
 
+    In a ``with`` its source is closed at the end, however the loop over it is left.
+
     Parameters
     ----------
     pipeline : Graph
     asked : tuple of str
         What is asked of it.
     results : iterator of Result
+    source : iterable, optional
+        Where the frames come from; a generator is closed with the stream.
     """
 
-    def __init__(self, pipeline: Graph, asked: tuple[str, ...], results: Iterator[Result]) -> None:
+    def __init__(
+        self,
+        pipeline: Graph,
+        asked: tuple[str, ...],
+        results: Iterator[Result],
+        source: Iterable[Any] = (),
+    ) -> None:
         self._pipeline = pipeline
         self._asked = asked
         self._results = results
+        self._source = source
+        self._closed = False
         self._taken = False
         self._broken = ""
         self._told = False
@@ -53,6 +65,19 @@ class Results(Iterator[Result]):
         self._taken, self._broken = True, ""
         return result
 
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the stream, and close its source where that is a generator: a port is free again."""
+        self._closed = True
+        for frames in (self._results, self._source):
+            if isinstance(frames, Generator):
+                frames.close()
+
     def to_pandas(self, *, long: bool = False) -> pd.DataFrame:
         """Run the frames that are left, and return their results as a table.
 
@@ -70,8 +95,11 @@ class Results(Iterator[Result]):
         Raises
         ------
         UsageError
-            If pandas is not installed, or no frames are left of those there were.
+            If pandas is not installed, the stream was closed, or no frames are left of those there
+            were.
         """
+        if self._closed:
+            raise UsageError("the stream was closed; pipeline.stream() makes a new one")
         try:
             import pandas as pd
         except ImportError:

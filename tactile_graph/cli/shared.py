@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import click
 
 from tactile_graph.errors import UsageError, did_you_mean, one_of
@@ -41,12 +43,15 @@ def _debug() -> click.Option:
 
 
 def _restrict(ctx: click.Context, param: click.Parameter, value: str | None) -> None:
-    if value is None:
+    if value is not None:
+        registry.restrict(value)
+    given = registry.selected()
+    if value is None and (ctx.resilient_parsing or given != os.environ.get(registry.ENVIRONMENT)):
         return
-    registry.restrict(value)
-    wanted = registry.Selection.parse(value)
+    wanted = registry.Selection.parse(given)
     names = [p.name for p in registry.installed().plugins]
     for name in sorted(wanted.only | wanted.blocked):
         if name not in names:
             hint = did_you_mean(name, names) or f"; there are: {one_of(names)}"
-            raise UsageError(f"--plugins: no plugin named {name!r}{hint}")
+            option = registry.ENVIRONMENT if value is None else "--plugins"
+            raise UsageError(f"{option}: no plugin named {name!r}{hint}")

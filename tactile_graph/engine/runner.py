@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import chain
-from typing import Any, Generic, Self, TypeVar
+from typing import Any, Generic, NoReturn, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,6 +125,18 @@ class Runner(Generic[ResultT]):
         # All that rules are about: a frame that is as the last one in these keeps them, too.
         self._checked: tuple[tuple[int, ...], str, tuple[float, float]] = (), "", (0.0, 0.0)
         _make_room(self.plan.depth)
+
+    def __reduce__(self) -> NoReturn:
+        """Refuse to be copied or pickled: a copy's steps would share what they keep with its own.
+
+        Raises
+        ------
+        UsageError
+        """
+        raise UsageError(
+            "a runner is not to be copied or pickled: its steps keep state; copy or pickle its "
+            "pipeline, whose runner() makes a new one"
+        )
 
     @property
     def stateful(self) -> bool:

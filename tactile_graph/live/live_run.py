@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from threading import Lock, Thread
-from typing import Any, Generic, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
 
 from tactile_graph.engine.calls.isolated import ProcessState
 from tactile_graph.engine.deadlines.deadline import Deadline
@@ -23,6 +23,13 @@ from tactile_graph.live.live_result import LiveResult
 from tactile_graph.live.waiting import Arrival, Waiting
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.given import as_frame, check_frames
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from tactile_graph.wires.image import Image
 
 ResultT = TypeVar("ResultT", bound=Outcomes)
 Clock = Callable[[], int]
@@ -68,7 +75,7 @@ class LiveRun(Generic[ResultT]):
     Parameters
     ----------
     pipeline : Pipeline
-    source : iterable of Frame, optional
+    source : iterable of Frame, Image or ndarray, optional
         The pipeline's own source if not given. Read as fast as it gives frames: a recording wants
         `paced`.
     only : sequence of str, optional
@@ -81,7 +88,9 @@ class LiveRun(Generic[ResultT]):
     capacity : int
         How many frames may wait.
     report : Report, optional
-        Receives what the pipeline's own source has to say.
+        Receives what the pipeline's own source has to say. Its ``wanted`` is false once the run is
+        stopped: a source that waits for something looks there now and then, and ends; it is closed
+        no sooner than at its next frame.
     clock : callable
         Nanoseconds now.
     """
@@ -89,7 +98,7 @@ class LiveRun(Generic[ResultT]):
     def __init__(
         self,
         pipeline: Runnable[ResultT],
-        source: Iterable[Frame] | None = None,
+        source: Iterable[Frame | Image | NDArray[np.generic]] | None = None,
         *,
         only: Sequence[str] | None = None,
         seed: int = 0,
@@ -104,7 +113,11 @@ class LiveRun(Generic[ResultT]):
         self._only, self._seed, self._clock = only, seed, clock
         self._pipeline = pipeline
         self._ready = self._made_ready(pipeline)
-        self._source = pipeline.frames(seed, self.report) if source is None else source
+        if source is not None:
+            check_frames(source)
+        self._source: Iterable[Frame | Image | NDArray[np.generic]] = (
+            pipeline.frames(seed, self.report) if source is None else source
+        )
         self._waiting = Waiting(capacity)
         self._error: BaseException | None = None
         self._stopped = False
@@ -224,7 +237,7 @@ class LiveRun(Generic[ResultT]):
         Raises
         ------
         Exception
-            What the source raised, after the frames it gave before.
+            What the source raised, or a `FrameError` where it gave none, after the frames before.
         """
         reader = Thread(target=self._read, name="tactile-graph reader", daemon=True)
         reader.start()
@@ -259,7 +272,8 @@ class LiveRun(Generic[ResultT]):
 
     def _read(self) -> None:
         try:
-            for frame in self._source:
+            for index, given in enumerate(self._source):
+                frame = given if isinstance(given, Frame) else as_frame(given, index)
                 arrival = Arrival(frame, self._clock())
                 if self._stopped:
                     break

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from tactile_graph.errors import Mark, Problem, did_you_mean, one_of
-from tactile_graph.pipeline.conditions import compile_condition
-from tactile_graph.pipeline.document import on_one_line
+from tactile_graph.pipeline.conditions import compile_condition, without_comments
+from tactile_graph.pipeline.document import Path, on_one_line
 from tactile_graph.pipeline.facts import ref_facts
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.references import ConditionError
@@ -18,6 +18,7 @@ from tactile_graph.pipeline.wiring import Ref
 def check_conditions(scope: Scope) -> None:
     """Report conditions that are wrong, used or not; a named one only where it stands."""
     named = scope.declaration.conditions
+    _check_comments(scope)
     errors: dict[str, ConditionError] = {}
     for name, text in named.items():
         try:
@@ -33,6 +34,23 @@ def check_conditions(scope: Scope) -> None:
         if wrong.named not in broken:
             what = f"node {node.name!r}, 'when': {wrong.message}"
             _condition_problem(scope, what, node.when or "", wrong, *node.path, "when")
+
+
+def _check_comments(scope: Scope) -> None:
+    """Report comments in conditions whose lines YAML has joined: nobody can tell where they end."""
+    declared = scope.declaration
+    found: list[tuple[str, str, Path]] = [
+        (f"condition {name!r}", text, ("conditions", name))
+        for name, text in declared.conditions.items()
+    ]
+    found += [
+        (f"node {node.name!r}, 'when'", node.when or "", (*node.path, "when"))
+        for node in declared.nodes.values()
+    ]
+    for what, text, path in found:
+        if scope.document.joins_lines(*path) and without_comments(text) != text:
+            words = "a comment in it would swallow the lines below, which YAML joins to its own"
+            scope.document.problem(f"{what}: {words}; take it out, or write '|' for '>'", *path)
 
 
 def check_fields_read(scope: Scope) -> None:

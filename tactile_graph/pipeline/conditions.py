@@ -6,13 +6,14 @@ import ast
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
 from dataclasses import dataclass
+from keyword import iskeyword
 from typing import Any
 
 import numpy as np
 
 from tactile_graph.errors import one_of, shown
 from tactile_graph.pipeline.comparable import fields_hint, is_scalar
-from tactile_graph.pipeline.nonsense import FUNCTIONS, no_arithmetic, no_truth, nonsense
+from tactile_graph.pipeline.nonsense import FUNCTIONS, no_arithmetic, no_call, no_truth, nonsense
 from tactile_graph.pipeline.over_items import OVER_ITEMS, resolve_of_items, spelled_out
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import Ref, arms
@@ -39,6 +40,11 @@ SIGNS = {
     r"(?<![\w.])[\d.]+[A-Za-z%°µ]": "a number stands alone, without a unit",
 }
 """What people write who think of another language -> what to write instead."""
+
+_ITS_OWN_WORDS = ("and", "or", "not", "in", "is", "if", "else", "True", "False", "None")
+"""Words of Python that conditions have, or of which something else is told."""
+
+_TEXT_OR_COMMENT = re.compile(r"""(?P<text>"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')|\#[^\n]*""")
 
 _ALLOWED = (
     ast.Expression, ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd,
@@ -107,9 +113,14 @@ def _settled(node: ast.expr, values: Mapping[str, str]) -> bool | None:
         return None
 
 
-def _one_line(text: str) -> str:
+def without_comments(text: str) -> str:
+    """Return the text with blanks in place of comments, each of which ends with its line."""
+    return _TEXT_OR_COMMENT.sub(lambda m: m["text"] or " " * len(m[0]), text)
+
+
+def one_line(text: str) -> str:
     """Return the text as one line: a YAML block keeps its line ends, Python minds them."""
-    return text.strip().replace("\n", " ")
+    return without_comments(text).strip().replace("\n", " ")
 
 
 def _short(value: Any) -> str:
@@ -126,7 +137,7 @@ def _short(value: Any) -> str:
 def names_in(text: str) -> set[str]:
     """Return the names at the root of a condition's references; empty if it cannot be parsed."""
     try:
-        tree = ast.parse(_one_line(text), mode="eval")
+        tree = ast.parse(one_line(text), mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return set()
     called = {id(n.func) for n in ast.walk(tree) if isinstance(n, ast.Call)}
@@ -170,7 +181,7 @@ def compile_condition(
         meaning = ast.unparse(tree)
         refs, groups = tuple(compiler.refs), tuple(compiler.groups)
         function = _function(meaning, len(refs), groups)
-        return Guard(" ".join(text.split()), refs, function, meaning, groups)
+        return Guard(" ".join(one_line(text).split()), refs, function, meaning, groups)
     except (RecursionError, MemoryError):
         raise ConditionError(f"nested deeper than {DEEPEST} levels") from None
 
@@ -213,8 +224,9 @@ class _Compiler:
         if len(text) > LONGEST or self.spelled > LONGEST_SPELLED:
             # Conditions that name each other twice over double with each name.
             raise ConditionError(f"longer than {LONGEST} characters")
+        text = one_line(text)
         try:
-            tree = ast.parse(_one_line(text), mode="eval")
+            tree = ast.parse(text, mode="eval")
         except SyntaxError as error:
             message = f"{shown(text)} is no condition: {error.msg}{_typo_hint(text)}"
             raise ConditionError(message, max(0, (error.offset or 1) - 1)) from None
@@ -287,6 +299,9 @@ class _Compiler:
         node.args = [self.rewrite(a, within) for a in node.args]
         if not node.args or (name in ("len", "abs") and len(node.args) != 1):
             raise ConditionError(f"{name}() takes one argument", node.col_offset)
+        words = no_call(name, node.args, self)
+        if words:
+            raise ConditionError(words, node.col_offset)
         return node
 
     def over_items(self, node: ast.Call, name: str, within: tuple[str, ...]) -> ast.expr:
@@ -382,7 +397,13 @@ class _Compiler:
 
 def _typo_hint(text: str) -> str:
     """Return what other languages' signs are here."""
-    return "".join(f"; {hint}" for sign, hint in SIGNS.items() if re.search(sign, text))
+    hints = [hint for sign, hint in SIGNS.items() if re.search(sign, text)]
+    hints += [
+        f"{word!r} is a word of Python: a condition can read nothing of that name"
+        for word in re.findall(r"\w+", _TEXT_OR_COMMENT.sub("", text))
+        if iskeyword(word) and word not in _ITS_OWN_WORDS
+    ]
+    return "".join(f"; {hint}" for hint in dict.fromkeys(hints))
 
 
 def _chain(node: ast.expr) -> tuple[str, ...] | None:

@@ -49,6 +49,7 @@ class Document:
     _keys: dict[Path, Mark] = field(default_factory=dict)
     _values: dict[Path, Mark] = field(default_factory=dict)
     _switches: dict[Path, str] = field(default_factory=dict)
+    _joined: set[Path] = field(default_factory=set)
 
     def spelled(self, *path: str | int) -> str:
         """Return how a yes/no is written: a condition may be called ``on``, a yes to YAML.
@@ -61,6 +62,10 @@ class Document:
     def raw(self, *path: str | int) -> str:
         """Return how a yes/no stands in the file."""
         return self._switches[path]
+
+    def joins_lines(self, *path: str | int) -> bool:
+        """Return whether YAML made one line of a text that has several in the file."""
+        return path in self._joined
 
     def mark(self, *path: str | int, key: bool = False) -> Mark:
         """Return where the value (or its key) at ``path`` stands, else its nearest parent."""
@@ -304,6 +309,8 @@ class _Reader:
             value = self._scalar(node)
             if isinstance(value, bool):
                 self.document._switches[path] = str(node.value)
+            elif node.style != "|" and node.start_mark.line != node.end_mark.line:
+                self.document._joined.add(path)
             return value
         self.document.problem_at(self._mark(node), _refused(node.tag))
         return None

@@ -91,7 +91,7 @@ def inline_nodes(inner: Graph, at: Embedding) -> tuple[list[Node], list[str]]:
     for output, source in inner.outputs.items():
         nodes.append(
             Node(
-                at.name if single else f"{at.name}.{output.replace('.', '_')}",
+                at.name if single else f"{at.name}.{field_of(output)}",
                 NodeKind.PASS,
                 inner.type_of(source),
                 at.mark,
@@ -102,6 +102,11 @@ def inline_nodes(inner: Graph, at: Embedding) -> tuple[list[Node], list[str]]:
             )
         )
     return nodes, troubles
+
+
+def field_of(output: str) -> str:
+    """Return what an embedded pipeline's output is called as a field of the node it stands for."""
+    return output.replace(".", "_")
 
 
 def _facts_at(ref: Ref, inner: Graph) -> Facts:
@@ -203,7 +208,7 @@ def _with_given(inner: Graph, at: Embedding) -> Graph:
 
 
 def _map_output(name: str, inner: Graph) -> Any:
-    kinds = {n.replace(".", "_"): inner.type_of(r) for n, r in inner.outputs.items()}
+    kinds = {field_of(n): inner.type_of(r) for n, r in inner.outputs.items()}
     if len(kinds) == 1:
         return list[next(iter(kinds.values()))]  # type: ignore[misc]
     fields = [(n, list[k]) for n, k in kinds.items()]  # type: ignore[valid-type]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
@@ -11,6 +11,7 @@ from typing import Any
 
 from tactile_graph.errors import Mark, UsageError
 from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.files_read import FilesRead
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import Ref
@@ -247,6 +248,7 @@ class Graph:
     registry: Registry | None = None
     deadline_us: float | None = None
     """Within which a live run wants the result of a frame, from its arrival on."""
+    files: FilesRead = field(default_factory=FilesRead.here)
 
     @cached_property
     def types(self) -> dict[str, Any]:
@@ -286,14 +288,19 @@ class Graph:
     @cached_property
     def unused(self) -> list[str]:
         """Nodes that no output needs; they run only when asked for."""
+        needed = self.needed(self.outputs.values())
+        return [n for n in self.nodes if n not in needed and not self.nodes[n].is_sink]
+
+    def needed(self, asked: Iterable[Ref]) -> set[str]:
+        """Return the nodes that what is asked for may need."""
         needed: set[str] = set()
-        waiting = [r.node for r in self.outputs.values()]
+        waiting = [r.node for r in asked]
         while waiting:
             name = waiting.pop()
             if name not in needed and name in self.nodes:
                 needed.add(name)
                 waiting += [r.node for r in self.nodes[name].wires()]
-        return [n for n in self.nodes if n not in needed and not self.nodes[n].is_sink]
+        return needed
 
     def resolved(self) -> dict[str, Any]:
         """Return the graph as plain data with every setting spelled out, as provenance keeps it."""

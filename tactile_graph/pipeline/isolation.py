@@ -33,7 +33,7 @@ def check_isolated(scope: Scope) -> None:
                 scope.document.problem(text, "isolated", i)
             continue
         try:
-            registry.offer("steps", name, scope.document.file)
+            registry.offer("steps", name, scope.place)
         except UsageError as error:
             text = f"'isolated': {error}; all steps of a plugin are named plugin{ALL}"
             scope.document.problem(text, "isolated", i)
@@ -45,7 +45,7 @@ def isolation_of(scope: Scope, declared: NodeDeclaration, signature: Signature) 
         return Isolation(declared.time_limit_s)
     if declared.isolated is False:
         return None
-    offer = scope.registry.offer("steps", signature.name, scope.document.file)
+    offer = scope.registry.offer("steps", signature.name, scope.place)
     listed = _listed(scope, offer)
     if listed is not None:
         return listed
@@ -63,7 +63,7 @@ def isolated_within(scope: Scope, node: Node) -> Node:
         return replace(node, inner=inner)
     if node.kind is not NodeKind.STEP or node.signature is None or node.isolation is not None:
         return node
-    offer = scope.registry.offer("steps", node.signature.name, scope.document.file)
+    offer = scope.registry.offer("steps", node.signature.name, scope.place)
     return replace(node, isolation=_listed(scope, offer))
 
 
@@ -73,6 +73,6 @@ def _listed(scope: Scope, offer: Offer) -> Isolation | None:
             return Isolation(process=offer.plugin.name)
         if name.endswith(ALL) or not scope.registry.has("steps", name):
             continue
-        if scope.registry.offer("steps", name, scope.document.file) is offer:
+        if scope.registry.offer("steps", name, scope.place) is offer:
             return Isolation(process=offer.qualified)
     return None

@@ -12,6 +12,7 @@ from tactile_graph.errors import PipelineError, TactileGraphError, UsageError, d
 from tactile_graph.files import looked_for, not_a_path
 from tactile_graph.pipeline.declaration import declare
 from tactile_graph.pipeline.document import Document, read_document, text_of_file
+from tactile_graph.pipeline.files_read import FilesRead, Used
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.resolve import SourceOverride, resolve
 from tactile_graph.pipeline.scope import Overrides, Scope
@@ -30,27 +31,46 @@ class Opened(NamedTuple):
         The pipelines that are being loaded because one uses the other: name and file.
     loaded : dict of Path to Graph or Exception
         What came of those that were loaded as they stand: they may be used more than once.
+    files : FilesRead
+        Each is read once.
     """
 
     within: tuple[tuple[str, Path], ...]
     loaded: dict[Path, Graph | Exception]
+    files: FilesRead
 
 
 def load_graph(name: str | Path, registry: Registry | None = None) -> Graph:
     """Return the graph of the pipeline of that name or in that file; for the rest see `load`."""
     registry = registry or installed()
-    return _load(find(name, registry), registry, {}, None, Opened((), {}))
+    path = find(name, registry)
+    return _build(_text(path), _shown(path), registry, {}, None, Opened((), {}, FilesRead.here()))
 
 
 def parse_graph(text: str, file: str = "<text>", registry: Registry | None = None) -> Graph:
     """Return the graph that YAML text declares; ``file`` is the name its errors carry."""
-    return _build(text, file, registry or installed(), {}, None, Opened((), {}))
+    return parse_again(text, file, registry, {}, None, FilesRead.here())
+
+
+def parse_again(
+    text: str,
+    file: str,
+    registry: Registry | None,
+    overrides: Overrides,
+    source: SourceOverride,
+    files: FilesRead,
+) -> Graph:
+    """Return the graph that YAML text declares, with other settings or another source.
+
+    What it uses is as it was where ``files`` have it, and read where they have not.
+    """
+    opened = Opened((), {}, files)
+    return _build(text, file, registry or installed(), overrides, source, opened)
 
 
 def resolve_again(graph: Graph, overrides: Overrides, source: SourceOverride) -> Graph:
-    """Return the graph resolved again from its text, with other settings or another source."""
-    registry = graph.registry or installed()
-    return _build(graph.text, graph.file, registry, overrides, source, Opened((), {}))
+    """Return the graph resolved again from its texts, with other settings or another source."""
+    return parse_again(graph.text, graph.file, graph.registry, overrides, source, graph.files)
 
 
 def find(name: str | Path, registry: Registry, file: str = "") -> Path:
@@ -134,15 +154,9 @@ def _siblings(path: Path) -> list[str]:
         return []
 
 
-def _load(
-    path: Path,
-    registry: Registry,
-    overrides: Overrides,
-    source: SourceOverride,
-    opened: Opened,
-) -> Graph:
+def _text(path: Path) -> str:
     try:
-        text = text_of_file(path)
+        return text_of_file(path)
     except OSError as error:
         why = error.strerror or error
         raise UsageError(f"pipeline file {str(path)!r} cannot be read: {why}") from None
@@ -152,7 +166,6 @@ def _load(
             f"pipeline file {str(path)!r} cannot be read: it is not UTF-8 text "
             f"(byte 0x{error.object[error.start]:02x} in line {line}); save it as UTF-8"
         ) from None
-    return _build(text, _shown(path), registry, overrides, source, opened)
 
 
 def _shown(path: Path) -> str:
@@ -175,13 +188,16 @@ def _build(
     declaration = declare(document)
     if document.problems and not declaration.nodes:
         raise PipelineError(_ordered(document.problems))
-    inside = opened._replace(within=(*opened.within, (declaration.name, Path(file).resolve())))
+    files = opened.files
+    inside = opened._replace(within=(*opened.within, (declaration.name, files.target(file))))
 
     def load_inner(name: str, inner_overrides: Overrides) -> Graph:
         return _load_inner(name, file, registry, inner_overrides, inside)
 
-    scope = Scope(declaration, registry, load_inner, overrides)
-    declaration.evolves = _parent(declaration.evolves, document, registry)
+    scope = Scope(declaration, registry, load_inner, overrides, files)
+    if file not in files.parents:
+        files.parents[file] = _parent(declaration.evolves, document, registry)
+    declaration.evolves = files.parents[file]
     graph = resolve(scope, source, embedded=bool(opened.within))
     if document.problems:
         raise PipelineError(_ordered(document.problems))
@@ -192,30 +208,38 @@ def _load_inner(
     name: str, file: str, registry: Registry, overrides: Overrides, opened: Opened
 ) -> Graph:
     """Return the graph that the pipeline in ``file`` uses by name."""
-    if "/" in name and not name.endswith((".yaml", ".yml")):
-        raise UsageError(f"{name!r}: a pipeline file ends in .yaml")
-    found = beside(name, file) or name
-    names, files = [n for n, _ in opened.within], [p for _, p in opened.within]
-    try:
-        path = find(found, registry, file)
-    except UsageError:
-        _refuse_circle(names, names, name)  # a pipeline's own name, of which there is no other
-        raise
+    names, targets = [n for n, _ in opened.within], [p for _, p in opened.within]
+    files = opened.files
+    used = files.used.get((file, name))
+    path = Path(files.place(used.file)) if used else _find_used(name, file, registry, names)
     target = path.resolve()
-    _refuse_circle(names, files, target)
+    _refuse_circle(names, targets, target)
     if len(names) > MOST_LEVELS:
         raise UsageError(f"pipelines use each other more than {MOST_LEVELS} deep")
+    if used is None:
+        used = files.used[file, name] = Used(_shown(path), _text(path))
     if overrides:
-        return _load(path, registry, overrides, None, opened)
+        return _build(used.text, used.file, registry, overrides, None, opened)
     if target not in opened.loaded:
         try:
-            opened.loaded[target] = _load(path, registry, {}, None, opened)
+            opened.loaded[target] = _build(used.text, used.file, registry, {}, None, opened)
         except TactileGraphError as error:
             opened.loaded[target] = error
     came = opened.loaded[target]
     if isinstance(came, Exception):
         raise came
     return came
+
+
+def _find_used(name: str, file: str, registry: Registry, within: list[str]) -> Path:
+    """Return the pipeline file that ``file`` uses by name."""
+    if "/" in name and not name.endswith((".yaml", ".yml")):
+        raise UsageError(f"{name!r}: a pipeline file ends in .yaml")
+    try:
+        return find(beside(name, file) or name, registry, file)
+    except UsageError:
+        _refuse_circle(within, within, name)  # a pipeline's own name, of which there is no other
+        raise
 
 
 def _refuse_circle(names: list[str], opened: Sequence[object], again: object) -> None:

@@ -63,6 +63,18 @@ def no_arithmetic(node: ast.BinOp, reading: Reading) -> str:
     return ""
 
 
+def no_call(name: str, given: list[ast.expr], reading: Reading) -> str:
+    """Return why a function cannot be told of what it is given; "" where it may be."""
+    sort, spelled = _sort(given[0], reading), reading.spell(given[0])
+    if name == "len" and sort == "number":
+        return f"len() counts the items of a list, and {spelled} is a number"
+    if name == "abs" and sort == "text":
+        return f"abs() takes a number, and {spelled} is a text"
+    if name in ("max", "min") and len(given) == 1 and sort == "number":
+        return f"{name}() takes several numbers, or a list of them, and {spelled} is one number"
+    return ""
+
+
 def nonsense(node: ast.Compare, reading: Reading) -> str:
     """Return why a comparison never tells frames apart; "" where it may."""
     if not any(True for _ in _read(node)):
@@ -156,8 +168,11 @@ def _no_list(left: ast.expr, right: ast.expr, operator: ast.cmpop, reading: Read
     if isinstance(right, ast.Tuple | ast.List):
         always = "true" if isinstance(operator, ast.NotIn) else "false"
         return "" if right.elts else f"nothing is in an empty list: this is always {always}"
+    if isinstance(right, ast.Constant) and isinstance(right.value, str):
+        text = ast.unparse(right)
+        return f"'in' looks into a list, and {text} is a text; a list is written ({text},)"
     kind = reading.kind(right)
-    number = isinstance(right, ast.Constant) and not isinstance(right.value, str)
+    number = isinstance(right, ast.Constant)
     scalar = kind is not None and all(
         is_scalar(arm) and sort_of(arm) == "number" and list_item(arm) is None for arm in arms(kind)
     )

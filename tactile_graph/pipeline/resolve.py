@@ -89,7 +89,7 @@ def resolve(scope: Scope, replaced: SourceOverride = None, embedded: bool = Fals
         nodes=scope.nodes, outputs=outputs, file=scope.document.file,
         text=scope.document.text, frame_rules=tuple(scope.rules), free=scope.free,
         overrides=scope.overrides, source_override=replaced, registry=scope.registry,
-        deadline_us=d.deadline_us,
+        deadline_us=d.deadline_us, files=scope.files,
     )  # fmt: skip
 
 
@@ -117,7 +117,7 @@ def _source(scope: Scope, replaced: SourceOverride) -> Source | None:
         scope.document.problem_at(at, message)
 
     try:
-        signature = scope.registry.step(step, scope.document.file)
+        signature = scope.registry.step(step, scope.place)
     except (UsageError, PluginError) as error:
         tell(f"source: {error}", "source", "step")
         return None
@@ -187,7 +187,7 @@ def _report(scope: Scope, declared: NodeDeclaration, troubles: list[Trouble]) ->
 def _step(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
     assert declared.step is not None
     try:
-        signature = scope.registry.step(declared.step, scope.document.file)
+        signature = scope.registry.step(declared.step, scope.place)
     except (UsageError, PluginError) as error:
         scope.problem(declared, f": {error}", "step")
         scope.add_unknown(declared.name)

@@ -10,6 +10,7 @@ from tactile_graph.errors import Mark
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.declaration import Declaration, NodeDeclaration
 from tactile_graph.pipeline.document import Document
+from tactile_graph.pipeline.files_read import FilesRead
 from tactile_graph.pipeline.graph import FRAME, Facts, FrameRule, Graph, Node
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import UNKNOWN, Ref, when_known
@@ -36,6 +37,7 @@ class Scope:
         For ``use``.
     overrides : mapping
         Node name -> settings from outside (``--set``, ``with_settings``, ``use … with``).
+    files : FilesRead
 
     Attributes
     ----------
@@ -51,6 +53,7 @@ class Scope:
     registry: Registry
     load: Loader
     overrides: Overrides
+    files: FilesRead
     types: dict[str, Any] = field(default_factory=lambda: {FRAME: Frame}, init=False)
     facts: dict[str, Facts] = field(default_factory=dict, init=False)
     nodes: dict[str, Node] = field(default_factory=dict, init=False)
@@ -66,6 +69,11 @@ class Scope:
     def document(self) -> Document:
         """The file, and what is wrong with it."""
         return self.declaration.document
+
+    @property
+    def place(self) -> str:
+        """The file's path that means the same from any folder."""
+        return self.files.place(self.document.file)
 
     def add(self, node: Node) -> None:
         """Enter a resolved node."""

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from tactile_graph.errors import PipelineError, TactileGraphError, did_you_mean, one_of
+from tactile_graph.errors import PipelineError, Problem, TactileGraphError, did_you_mean, one_of
 from tactile_graph.pipeline.conditions import Guard
 from tactile_graph.pipeline.declaration import NodeDeclaration
 from tactile_graph.pipeline.embed import (
     Embedding,
     Given,
+    field_of,
     given_troubles,
     inline_nodes,
     map_node,
@@ -27,7 +28,7 @@ def resolve_use(scope: Scope, declared: NodeDeclaration, guard: Guard | None) ->
     """Enter what a ``use`` stands for; what is wrong with it is reported in the scope."""
     inner = _inner(scope, declared)
     wired = None if inner is None else _inputs(scope, declared, inner)
-    if inner is None or wired is None:
+    if inner is None or wired is None or not _parts_outputs(scope, declared, inner):
         scope.add_unknown(declared.name)
         return
     frame = wired.pop(FRAME)
@@ -74,6 +75,19 @@ def _cannot_be_used(scope: Scope, declared: NodeDeclaration, text: str) -> None:
     scope.problem(declared, f": pipeline {declared.use!r} cannot be used: {text}", "use")
 
 
+def _parts_outputs(scope: Scope, declared: NodeDeclaration, inner: Graph) -> bool:
+    """Return whether no two outputs have one name here, where dots are ``_``; else report them."""
+    found: dict[str, str] = {}
+    for output in inner.outputs:
+        other = found.setdefault(field_of(output), output)
+        if other != output:
+            what = f"outputs {other!r} and {output!r} of pipeline {declared.use!r}"
+            text = f": {what} would both be {declared.name}.{field_of(output)} here; rename a node"
+            scope.problem(declared, text, "use")
+            return False
+    return True
+
+
 def _inputs(scope: Scope, declared: NodeDeclaration, inner: Graph) -> dict[str, Given] | None:
     """Return what takes the place of the frame, and of which nodes; None where that is wrong."""
     wired = declared.inputs
@@ -110,11 +124,21 @@ def _check_given(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embe
     for name, what in given_troubles(inner, at):
         scope.problem(declared, f": {what}", "in", name)
     gone = replaced_nodes(inner, at.given)
+
+    def why_idle(node: str) -> str:
+        if node not in gone:
+            return ""
+        which = "'in' takes its place" if node in at.given else "nothing needs it here"
+        return f"{node!r} does not run: {which}"
+
     for setting in declared.settings:
-        node = setting.rpartition(".")[0]
-        if node in gone:
-            which = "'in' takes its place" if node in at.given else "nothing needs it here"
-            scope.problem(declared, f", {setting}: {node!r} does not run: {which}", "with", setting)
+        if why := why_idle(setting.rpartition(".")[0]):
+            scope.problem(declared, f", {setting}: {why}", "with", setting)
+    for name, settings in scope.overrides.items():
+        head, _, node = name.partition("/")
+        if head == declared.name and (why := why_idle(node.partition("/")[0])):
+            told = f"setting {name}.{next(iter(settings), '')}: {why}"
+            scope.document.problems.append(Problem(None, told))
 
 
 def _map(scope: Scope, declared: NodeDeclaration, inner: Graph, at: Embedding) -> None:

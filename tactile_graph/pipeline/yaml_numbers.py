@@ -2,7 +2,7 @@
 
 To 1.1 ``010`` is eight, ``08`` a text and ``1:30`` ninety. Here the first two are ten and eight and
 the last is a text, as to the editors and libraries that know 1.2; ``0o10``, ``0x10``, ``0b1``,
-``+010`` and ``1_000`` are numbers, too.
+``+010``, ``-.5`` and ``1_000`` are numbers, too.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import yaml
 _INT, _FLOAT = "tag:yaml.org,2002:int", "tag:yaml.org,2002:float"
 WHOLE = re.compile(r"(?:[-+]?(?:0b[01_]+|0x[0-9a-fA-F_]+|[0-9][0-9_]*)|0o[0-7]+)$")
 BROKEN = re.compile(
-    r"(?:[-+]?[0-9][0-9_]*\.[0-9_]*(?:[eE][-+][0-9]+)?|\.[0-9][0-9_]*(?:[eE][-+][0-9]+)?"
+    r"(?:[-+]?[0-9][0-9_]*\.[0-9_]*(?:[eE][-+][0-9]+)?|[-+]?\.[0-9][0-9_]*(?:[eE][-+][0-9]+)?"
     r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$"
 )
 _ELSEWHERE = {

@@ -1,6 +1,7 @@
 """What travels on the wires: records with units, no algorithms."""
 
-from tactile_graph.wires.frame import FARTHEST_CM, LARGEST, PITCHES_CM, Frame, TrueObject
+from tactile_graph.wires.checked import FARTHEST_CM, LARGEST, PITCHES_CM
+from tactile_graph.wires.frame import Frame, TrueObject
 from tactile_graph.wires.image import Image, Mask, packed_mask, quick_image, quick_mask
 from tactile_graph.wires.points import Points, quick_points
 from tactile_graph.wires.shapes import Circle, Ellipse, Polygon, Rectangle, Shape, quick_polygon

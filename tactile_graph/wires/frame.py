@@ -4,23 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import isfinite
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.quantities import checked_quantity
+from tactile_graph.wires.checked import (
+    LARGEST,
+    check_place_in_time,
+    checked_name,
+    checked_origin,
+    checked_pitch,
+)
 from tactile_graph.wires.image import Image, Mask
 from tactile_graph.wires.measure import Measured
 from tactile_graph.wires.shapes import Shape, longer_side_first
-
-LARGEST = 1e100
-"""Beyond this, what a sensor gave is no reading."""
-PITCHES_CM = (1e-6, 1e6)
-"""The least and the greatest pitch of a frame."""
-FARTHEST_CM = 1e9
-"""Of a frame's origin; beyond it, places on the frame could not be told apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,8 +106,8 @@ class Frame:
         ------
         ValueError
             If values are no real numbers, an image, or have no rows and columns, the pitch is not
-            within 1e-6 to 1e6 cm, the origin not within 1e9 cm, a time not finite, the index below
-            0, or nobody knows the quantity.
+            within 1e-6 to 1e6 cm, the origin not within 1e9 cm, a time not finite, the index no
+            whole number from 0 on, the label no text, or nobody knows the quantity.
         """
         copy = _real(values)
         if copy.ndim != 2 or 0 in copy.shape:
@@ -120,23 +118,9 @@ class Frame:
         if valid is not None:
             copy[~valid] = 0.0  # a NaN left in place would spread through the first sum
         copy[size < 1.0 / LARGEST] = 0.0
-        both = pitch_cm if isinstance(pitch_cm, tuple) else np.broadcast_to(pitch_cm, 2)
-        x, y = (float(p) for p in both)
-        if not (x > 0.0 and y > 0.0):
-            raise ValueError(f"a pitch must be > 0 cm, got {pitch_cm}")
-        low, high = PITCHES_CM
-        if not (low <= x <= high and low <= y <= high):
-            raise ValueError(f"a pitch must be within {low:g} to {high:g} cm, got {pitch_cm}")
-        if not (abs(origin_cm[0]) <= FARTHEST_CM and abs(origin_cm[1]) <= FARTHEST_CM):
-            raise ValueError(f"an origin must be within {FARTHEST_CM:g} cm, got {origin_cm} cm")
-        for name in ("time_s", "device_time_s"):
-            time_s = rest.get(name)
-            if time_s is not None and not isfinite(time_s):
-                raise ValueError(f"{name} must be finite, got {time_s}")
-        if rest.get("index", 0) < 0:
-            raise ValueError(f"an index counts from 0, got {rest['index']}")
-        named = checked_quantity(quantity)
-        return cls(Image(copy, (x, y), origin_cm, named, valid), **rest)
+        pitch, origin = checked_pitch(pitch_cm), checked_origin(origin_cm)
+        check_place_in_time(rest)
+        return cls(Image(copy, pitch, origin, checked_name(quantity), valid), **rest)
 
     def with_index(self, index: int) -> Frame:
         """Return the same frame under another number."""
@@ -161,6 +145,8 @@ def _real(values: NDArray[Any]) -> NDArray[np.float64]:
         raise ValueError("a frame takes bare values, got an Image; write Frame(image)")
     if isinstance(values, Mask):
         raise ValueError("a frame takes bare values, got a Mask; take its .values")
+    if isinstance(values, list | tuple) and any(isinstance(r, np.ma.MaskedArray) for r in values):
+        values = np.ma.array(values)
     given = np.asarray(values)
     if given.dtype.kind not in "biufO" or (given.dtype.kind == "O" and np.iscomplexobj(given)):
         raise ValueError(f"a frame takes real numbers, got {given.dtype.name}")

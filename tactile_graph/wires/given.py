@@ -6,40 +6,45 @@ import os
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from tactile_graph.errors import UsageError, one_of, shown
+from tactile_graph.errors import FrameError, UsageError, one_of, shown
+from tactile_graph.wires.checked import checked_image
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
 
 WITH_SOURCE = "with_source('recording', path={path!r})"
 
 
-def as_frame(given: Any, index: int = 0) -> Frame:
+def as_frame(given: Any, index: int | None = None) -> Frame:
     """Return a frame as it is, or one around an image or a bare array.
 
     Parameters
     ----------
     given : Frame, Image or array, shape (rows, columns)
         A bare array becomes a frame of pitch 1 cm and quantity ``raw``.
-    index : int
-        Number of a frame that is made here.
+    index : int, optional
+        Number of a frame that is made here, and by which errors name it.
 
     Raises
     ------
     UsageError
         If it is a path or text, or several frames.
-    ValueError
-        As of `Frame.of`.
+    FrameError
+        Where `Frame.of` raises a ValueError.
     """
     if isinstance(given, Frame):
         return given
-    if isinstance(given, Image):
-        return Frame(given, index)
     if isinstance(given, str | bytes | os.PathLike):
         raise UsageError(f"a frame is needed, got {_told(given, WITH_SOURCE)}")
     if isinstance(given, list | tuple) and any(isinstance(one, Frame | Image) for one in given):
         kind = type(given).__name__
         raise UsageError(f"a frame is needed, got a {kind} of {len(given)}; stream() takes several")
-    return Frame.of(given, index=index)
+    try:
+        if isinstance(given, Image):
+            return Frame(checked_image(given), index or 0)
+        return Frame.of(given, index=index or 0)
+    except ValueError as error:
+        where = "" if index is None else f"frame {index}: "
+        raise FrameError(f"{where}{error}") from None
 
 
 def as_frames(given: Any, reading: str = WITH_SOURCE) -> Iterator[Frame]:
@@ -57,6 +62,16 @@ def as_frames(given: Any, reading: str = WITH_SOURCE) -> Iterator[Frame]:
     UsageError
         If it is one frame, a path, or nothing that has frames one after the other.
     """
+    check_frames(given, reading)
+    try:
+        frames = iter(given)
+    except TypeError:
+        raise UsageError(f"frames are needed, got {type(given).__name__}") from None
+    return (as_frame(frame, index) for index, frame in enumerate(frames))
+
+
+def check_frames(given: Any, reading: str = WITH_SOURCE) -> None:
+    """Refuse what has no frames one after the other; parameters and errors as of `as_frames`."""
     kind = type(given).__name__
     if isinstance(given, str | bytes | os.PathLike):
         raise UsageError(f"frames are needed, got {_told(given, reading)}")
@@ -65,11 +80,8 @@ def as_frames(given: Any, reading: str = WITH_SOURCE) -> Iterator[Frame]:
         raise UsageError(f"frames are needed, got a {kind}: give one of its values{names}")
     if isinstance(given, Frame | Image) or getattr(given, "ndim", None) == 2:
         raise UsageError(f"frames are needed, got one {kind}: a list of it is a stream of one")
-    try:
-        frames = iter(given)
-    except TypeError:
-        raise UsageError(f"frames are needed, got {kind}") from None
-    return (as_frame(frame, index) for index, frame in enumerate(frames))
+    if not (hasattr(given, "__iter__") or hasattr(given, "__getitem__")):
+        raise UsageError(f"frames are needed, got {kind}")
 
 
 def _told(path: str | bytes | os.PathLike[Any], reading: str) -> str:

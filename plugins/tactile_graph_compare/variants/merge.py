@@ -195,8 +195,8 @@ def node_digests(pipeline: Graph, always: Collection[str], private: object) -> d
     Returns
     -------
     dict of str
-        Node name -> digest. Equal are step, settings, guard (spelled out) and all that is read,
-        down to the frame.
+        Node name -> digest. Equal are step, settings, guard (spelled out), process, time limit
+        and all that is read, down to the frame.
 
     Notes
     -----
@@ -220,7 +220,8 @@ def _what(node: Node) -> tuple[object, ...]:
         return (node.kind.value,)
     seed = node.key if node.signature.rng else ""
     settings = sorted(plain(node.settings).items())
-    return ("step", node.signature.name, id(node.signature.target), settings, node.each, seed)
+    step = (node.signature.name, id(node.signature.target), node.isolation)
+    return ("step", *step, settings, node.each, seed)
 
 
 def _inner(pipeline: Graph | None) -> tuple[object, ...]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from tactile_graph import Pipeline, load
 from tactile_graph.errors import PipelineError, UsageError, did_you_mean, one_of
-from tactile_graph.inspect import Graph, plain
+from tactile_graph.inspect import Graph, idle_settings, plain
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph_compare.variants.request import VariantRequest, as_yaml, spelled
 from tactile_graph_compare.variants.sweeps import Sweep, combinations
@@ -71,6 +71,7 @@ def prepare(
     _check_names([*common], [x.pipeline for x in loaded], "--set")
     swept = [x.pipeline for x in loaded if x.request.swept]
     _check_names([s.name for s in sweeps], swept, "--sweep")
+    _check_effect([s.name for s in sweeps], [x for x in loaded if x.request.swept])
     loaded = [_set(x, {k: v for k, v in common.items() if has_setting(x.pipeline, k)})
               for x in loaded]  # fmt: skip
     everything = [y for x in loaded for y in _swept(x, sweeps, crossed)]
@@ -156,6 +157,18 @@ def _check_names(names: Sequence[str], pipelines: Sequence[Pipeline], option: st
         if name not in known:
             hint = did_you_mean(name, known)
             raise UsageError(f"{option} {name}: none of the pipelines has it{hint}")
+
+
+def _check_effect(names: Sequence[str], swept: Sequence[_Loaded]) -> None:
+    """Refuse a sweep of which all variants would be alike."""
+    for name in names:
+        having = [x for x in swept if has_setting(x.pipeline, name)]
+        if all(idle_settings(x.pipeline, [name], x.request.only) for x in having):
+            node = name.rpartition(".")[0]
+            raise UsageError(
+                f"--sweep {name}: all variants would be alike, for no output that is asked for"
+                f" needs {node!r}"
+            )
 
 
 # -- labels ----------------------------------------------------------------------------------

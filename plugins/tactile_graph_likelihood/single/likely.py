@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, ClassVar
+
+import numpy as np
 
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle, Shape
 from tactile_graph_likelihood.geometry.outlines import unpacked
@@ -19,9 +21,18 @@ SHOWN = ("centre_std_cm", "log_evidence", "surprise", "fits")
 
 
 class _Likely:
-    """What all of them tell of their posterior."""
+    """What all of them tell of their posterior; two are equal where all that they hold is."""
 
     posterior: Posterior
+
+    def __eq__(self, other: object) -> bool:
+        if other.__class__ is not self.__class__:
+            return NotImplemented
+        return _hold_the_same(self, other)
+
+    def __hash__(self) -> int:
+        shape: Any = self
+        return hash((self.__class__, shape.x_cm, shape.y_cm))
 
     @property
     def centre_std_cm(self) -> float:
@@ -42,6 +53,14 @@ class _Likely:
     def fits(self) -> bool:
         """As in `Posterior`."""
         return self.posterior.fits
+
+
+def _hold_the_same(one: Any, other: Any) -> bool:
+    if one.__class__ is not other.__class__:
+        return False
+    if not is_dataclass(one):
+        return np.array_equal(one, other)
+    return all(_hold_the_same(getattr(one, f.name), getattr(other, f.name)) for f in fields(one))
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.inspect import one_line
+
 SIGNS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 HOLDS, HOLDS_NOT = "is true", "is false"
 """Signs of a field that is true or false by itself: the guard names it, or says ``not``."""
@@ -107,7 +109,7 @@ def is_free(text: str, nodes: Collection[str]) -> bool:
 
 
 def _parts(text: str) -> list[ast.expr]:
-    tree = ast.parse(text.strip().replace("\n", " "), mode="eval").body
+    tree = ast.parse(one_line(text), mode="eval").body
     return tree.values if isinstance(tree, ast.BoolOp) and isinstance(tree.op, ast.And) else [tree]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
@@ -145,10 +145,24 @@ def run(
         _check_divided(lines, plot, decisions)
     opened = open_pipeline(pipeline, recordings, source, source_settings, settings, span)
     check_targets((("-o", lines.name if lines else None), ("--plot", plot)), [opened])
-    one = _Run(opened, tuple(only), span, seed, lines, plot, verify, decisions)
+    one = _Run(opened, tuple(dict.fromkeys(only)), span, seed, lines, plot, verify, decisions)
+    _tell_idle(opened, settings, one.only)
     if divided:
         one.divided(workers, on, resume)
     one.go()
+
+
+def _tell_idle(pipeline: Pipeline, settings: Sequence[str], asked: Sequence[str]) -> None:
+    """Say which of the settings given change nothing."""
+    if settings:
+        from tactile_graph.cli.terminal import console
+        from tactile_graph.pipeline.idle import idle_settings
+
+        names = [text.partition("=")[0].strip() for text in settings]
+        for name in idle_settings(pipeline, names, asked):
+            node = name.rpartition(".")[0]
+            told = f"--set {name}: changes nothing, for what is asked for does not need {node!r}"
+            console(stderr=True).print(told, style="yellow", soft_wrap=True)
 
 
 def _check_files(output: Output | None, plot: str | None) -> None:

@@ -139,7 +139,7 @@ def _install_settings(files: list[Path]) -> bool:
 
 def _pipelines_here() -> list[Path]:
     files = sorted(path for end in YAML for path in Path().glob(f"*{end}"))
-    found = [f for f in files if re.search(r"^pipeline[ \t]*:", _text_of(f), re.M)]
+    found = [f for f in files if re.search(r"^\ufeff?pipeline[ \t]*:", _text_of(f), re.M)]
     if not found:
         raise UsageError("no pipeline file is in this folder; name one: schema --install FILE")
     return found

@@ -105,8 +105,8 @@ def _lead(result: Outcomes) -> Row:
 class FrameTable:
     """A row a frame; of lists only how many items they have.
 
-    What an output holds under a name that the table itself has (``time_s``, ``….outcome``) is
-    named ``….value``.
+    What an output holds under a name that the table itself has (``time_s``, ``….outcome``), or
+    that is a field of another output, is named ``….value``.
 
     Parameters
     ----------
@@ -115,10 +115,12 @@ class FrameTable:
 
     def __init__(self, outputs: Sequence[OutputColumns]) -> None:
         self._outputs = outputs
+        self._names = _names(outputs)
         columns = [*LEAD]
         for output in outputs:
             columns.append(Column(f"{output.output}.outcome", output.output, "outcome", "", str))
-            columns += [replace(c, key=free_key(c.key)) for c in output.values]
+            names = self._names[output.output]
+            columns += [replace(c, key=names[c.key]) for c in output.values]
             columns += output.errors
         self.columns = tuple(columns)
 
@@ -128,7 +130,8 @@ class FrameTable:
         for output in self._outputs:
             row[f"{output.output}.outcome"] = outcome_word(result.outcome(output.output))
             values = values_of(result, output)
-            row.update({free_key(key): value for key, value in values.items()})
+            names = self._names[output.output]
+            row.update({names.get(key) or free_key(key): value for key, value in values.items()})
         yield row
 
     def of_block(self, block: Block[Any]) -> dict[str, list[Any]]:
@@ -142,8 +145,7 @@ class FrameTable:
             cells.put_row(row, next(self.rows(block[row])))
         return cells.columns()
 
-    @staticmethod
-    def _put_part(part: Part, cells: Cells) -> bool:
+    def _put_part(self, part: Part, cells: Cells) -> bool:
         """Write the cells of frames whose outputs are stacks; return whether all could be."""
         found: dict[str, Sequence[Any]] = {}
         for name, outcomes in part.outcomes.items():
@@ -151,7 +153,8 @@ class FrameTable:
                 shown = fields_shown(outcomes, name)
                 if shown is None:
                     return False
-                found |= {free_key(key): column for key, column in shown.items()}
+                names = self._names[name]
+                found |= {names.get(k) or free_key(k): column for k, column in shown.items()}
                 found[f"{name}.outcome"] = ["ok"] * len(part.rows)
             else:
                 words = {o: outcome_word(o) for o in set(outcomes)}
@@ -159,6 +162,21 @@ class FrameTable:
         for key, column in found.items():
             cells.put(key, part.rows, column)
         return True
+
+
+def _names(outputs: Sequence[OutputColumns]) -> dict[str, dict[str, str]]:
+    """Return, by output, how the table calls what it holds; a field of one may be another."""
+    taken: set[str] = set()
+    found: dict[str, dict[str, str]] = {}
+    for output in sorted(outputs, key=lambda o: len(o.output)):
+        names = found[output.output] = {}
+        for column in output.values:
+            key = free_key(column.key)
+            while key in taken:
+                key += ".value"
+            names[column.key] = key
+        taken |= {*names.values()}
+    return found
 
 
 @dataclass(frozen=True)

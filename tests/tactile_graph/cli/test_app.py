@@ -14,6 +14,7 @@ import pytest
 
 from helpers_cli import broken_plugin, call, install
 from tactile_graph.cli.app import COMMANDS
+from tactile_graph.plugins import registry
 
 COMMAND = '''
 """A plugin's module of commands."""
@@ -105,6 +106,15 @@ def test_every_mistake_is_a_line_on_stderr_and_exit_code_2(args, message):
     assert got.exit_code == 2
     assert message in got.stderr
     assert "Traceback" not in got.output
+
+
+@pytest.mark.usefixtures("with_commands")
+def test_an_unknown_plugin_in_the_environment_is_told_as_such(monkeypatch):
+    monkeypatch.setattr(registry, "_override", None)
+    monkeypatch.setenv("TACTILE_GRAPH_PLUGINS", "-hnad")
+    told = "TACTILE_GRAPH_PLUGINS: no plugin named 'hnad'; did you mean 'hand'?"
+    assert told in call("hello").stderr
+    assert told not in call("--plugins", "hand", "hello").output
 
 
 @pytest.mark.usefixtures("with_commands")

@@ -10,6 +10,7 @@ import pytest
 
 from tactile_graph import Frame, Skip, load, loads
 from tactile_graph.errors import PipelineError
+from tactile_graph.pipeline.idle import idle_settings
 from tactile_graph.testing import isolated
 from tactile_graph.wires import Image, Mask
 
@@ -100,6 +101,35 @@ def test_what_cannot_take_a_nodes_place_is_told_at_load(tmp_path: Path) -> None:
         with pytest.raises(PipelineError) as caught:
             made(tmp_path, wrong)
         assert told in str(caught.value)
+
+
+def test_a_setting_from_outside_of_a_node_that_does_not_run_is_refused(tmp_path: Path) -> None:
+    pipeline = made(tmp_path, ALL + "  u: {use: inner.yaml, in: {opened: all}}")
+    for name, why in (("opened.element", "'in' takes its place"), ("footprint.level", "nothing")):
+        told = f"setting u/{name}: '{name.partition('.')[0]}' does not run: {why}"
+        with pytest.raises(PipelineError, match=told):
+            pipeline.with_settings({f"u/{name}": "square3" if "element" in name else 1})
+
+
+def test_settings_of_nodes_that_nothing_needs_are_known(tmp_path: Path) -> None:
+    nodes = (
+        CONTACTS + "  u: {use: inner.yaml}\n  v: {use: own.yaml, in: objects.contacts, each: true}"
+    )
+    names = ["touched.level", "u/opened.element", "v/found.level", "objects.margin"]
+    for outputs, idle in {"u": [names[0], *names[2:]], "v": names[1:2], "u, v": []}.items():
+        assert idle_settings(made(tmp_path, nodes, outputs), names) == idle
+
+
+@pytest.mark.parametrize("more", ["", ", in: objects.contacts, each: true"])
+def test_two_outputs_that_would_have_one_name_are_told(tmp_path: Path, more: str) -> None:
+    both = OWN.replace("outputs: [sum]", "  cells_count: {step: load, in: frame}\n")
+    (tmp_path / "both.yaml").write_text(
+        both + "outputs: [cells_count, found, found.count, cells.count]"
+    )
+    nodes = f"  u: {{use: both.yaml{more}}}"
+    told = r"outputs 'cells_count' and 'cells.count' of .* would both be u.cells_count here"
+    with pytest.raises(PipelineError, match=told):
+        made(tmp_path, CONTACTS + nodes, "u.found")
 
 
 def test_a_pipeline_runs_for_each_item_of_several_lists(tmp_path: Path) -> None:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from pathlib import Path
+from threading import Barrier, Thread
 from typing import Any
 
 import numpy as np
@@ -36,6 +39,44 @@ def sums(runner: Any, index: int) -> tuple[int, int]:
 def test_a_bare_array_is_told_to_be_no_frame() -> None:
     with pytest.raises(UsageError, match=r"takes frames, got ndarray; Frame\.of"):
         pipeline().runner()(np.ones((2, 2)))  # type: ignore[arg-type]
+
+
+def test_each_thread_keeps_its_runner_however_many_there_are(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made: list[weakref.ref[Any]] = []
+    make = Pipeline.runner
+
+    def noted(*given: Any, **more: Any) -> Any:
+        runner = make(*given, **more)
+        made.append(weakref.ref(runner))
+        return runner
+
+    monkeypatch.setattr(Pipeline, "runner", noted)
+    n = 40
+    stateless = pipeline(FLOW.replace("count", "add1"))
+    together = Barrier(n)
+
+    def work() -> None:
+        for i in range(3):
+            together.wait()
+            assert stateless.run(frame(10, i))["sum"] == 11
+
+    threads = [Thread(target=work) for _ in range(n)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(made) == n
+    gc.collect()
+    assert not [runner for runner in made if runner() is not None]  # gone with their threads
+
+
+def test_a_thread_keeps_a_bounded_number_of_runners() -> None:
+    stateless = pipeline(FLOW.replace("count", "add1"))
+    for seed in range(40):
+        stateless.run(frame(10), seed=seed)
+    assert len(stateless._kept.runners) == 16
 
 
 def test_a_node_that_computes_the_same_goes_on_and_one_that_reads_another_begins_anew() -> None:

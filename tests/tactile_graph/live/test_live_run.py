@@ -6,14 +6,17 @@ import asyncio
 import itertools
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
+from queue import Empty, Queue
 from threading import Event
 from typing import Any
 
+import numpy as np
 import pytest
 
 from helpers_graphs import STEPS, frame, registry
 from tactile_graph import Frame, Pipeline, loads
-from tactile_graph.errors import PipelineError, UsageError
+from tactile_graph.errors import FrameError, PipelineError, UsageError
 from tactile_graph.live import LiveRun, paced
 from tactile_graph.live.waiting import Arrival, Waiting
 from tactile_graph.steps import Report
@@ -314,6 +317,40 @@ def test_what_the_source_raises_is_raised_by_async_for() -> None:
         stream = pipeline().live(broken())
         assert [(await anext(stream)).result["more"] for _ in range(2)] == [1, 2]
         with pytest.raises(OSError, match="unplugged"):
+            await anext(stream)
+
+    asyncio.run(answers())
+
+
+def test_a_source_that_waits_for_a_queue_ends_when_its_stream_is_closed() -> None:
+    given: Queue[Frame] = Queue()
+    report, closed = Report(), Event()
+
+    def source() -> Iterator[Frame]:
+        try:
+            while report.wanted:
+                with suppress(Empty):
+                    yield given.get(timeout=0.01)
+        finally:
+            closed.set()
+
+    async def first() -> None:
+        given.put(frame(1, 0))
+        async with pipeline().live(source(), report=report) as stream:
+            assert (await anext(stream)).result["more"] == 2
+
+    asyncio.run(first())
+    assert closed.wait(5)
+
+
+def test_arrays_are_frames_and_what_makes_none_is_told_by_its_number() -> None:
+    async def answers() -> None:
+        given = [np.full((2, 2), 3.0), frame(4, 7), np.ones(3)]
+        stream = pipeline().live(given)  # type: ignore[arg-type]
+        taken = [await anext(stream) for _ in range(2)]
+        assert [live.result["more"] for live in taken] == [4, 5]
+        assert [live.result.frame.index for live in taken] == [0, 7]
+        with pytest.raises(FrameError, match="frame 2: a frame takes values of shape"):
             await anext(stream)
 
     asyncio.run(answers())

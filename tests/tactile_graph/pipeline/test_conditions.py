@@ -71,6 +71,8 @@ def holds(text: str, named: dict[str, str] | None = None) -> bool:
         ("abs(b - a) > 2.4", True),
         ("found.names", True),
         (" a\n  > 2 ", True),
+        ('a > 2  # so\nand b > 1  # "not"\n', False),
+        ("text == 'on#' or text == \"#\" or a > 3#", False),
     ],
 )
 def test_a_condition_gives_what_python_would(text: str, expected: bool) -> None:
@@ -110,7 +112,12 @@ def test_a_text_is_not_compared_with_a_number() -> None:
         ("(a > 2, b) and a", "this is a list, which is always true"),
         ("a in 3", r"'in' looks into a list, and 3 is a number; a list is written \(3,\)"),
         ("a in (3)", r"'in' looks into a list, and 3 is a number"),
-        ("text in a", r"'in' looks into a list, and a is a number"),
+        ("len(found.count) > 1", r"len\(\) counts the items of a list, and found.count is"),
+        ("abs(text) > 1", r"abs\(\) takes a number, and text is a text"),
+        ("max(b) > 1", r"max\(\) takes several numbers, or a list of them, and b is one number"),
+        ("class.count > 1", "'class' is a word of Python: a condition can read nothing of that"),
+        ("text in ('on')", r"'in' looks into a list, and 'on' is a text; .* written \('on',\)"),
+        ("text in a", r" looks into a list, and a is a number"),
         ("a in ()", "nothing is in an empty list: this is always false"),
         ("a not in []", "nothing is in an empty list: this is always true"),
         ("len(found.names) < 0", r"len\(\) is never negative: this is always false"),
@@ -274,6 +281,35 @@ def test_a_reason_shows_what_was_read(value: Any, shown: str) -> None:
 def test_names_are_those_of_nodes_not_of_functions() -> None:
     assert names_in("max(max, len(x.y)) > z") == {"max", "x", "z"}
     assert names_in("a >") == set()
+
+
+COMMENTED = """
+pipeline: commented
+nodes:
+  a:
+    step: threshold
+    in: frame
+    with: {{level_v: 0.01}}
+    when: {style}
+      frame.index > 0           # began
+      and frame.index > 5  # it's late
+outputs: [a]
+"""
+
+
+def test_a_comment_in_a_condition_ends_with_its_line() -> None:
+    pipeline = loads(COMMENTED.format(style="|"))
+    frames = [Frame.of([[1.0]], quantity="volt").with_index(i) for i in (0, 1, 6)]
+    assert [pipeline.run(f).ok for f in frames] == [False, False, True]
+    guard = pipeline.nodes["a"].guard
+    assert guard is not None
+    assert guard.text == "frame.index > 0 and frame.index > 5"
+
+
+@pytest.mark.parametrize("style", [">", ">-"])
+def test_a_comment_whose_line_yaml_joins_to_the_next_is_refused(style: str) -> None:
+    with pytest.raises(PipelineError, match=r"8:\d+: node 'a', 'when': a comment in it would swal"):
+        loads(COMMENTED.format(style=style))
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pickle
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
@@ -623,6 +624,19 @@ def test_a_file_that_uses_itself_under_another_name_is_a_circle(reg: Any, tmp_pa
         load(path, reg)
 
 
+def test_files_that_use_each_other_are_a_circle_wherever_one_comes_in(
+    reg: Any, tmp_path: Path
+) -> None:
+    for name, used in (("d", "cb"), ("c", "b"), ("b", "c")):
+        nodes = ", ".join(f"{u}: {{use: {u}.yaml, with: {{m.tag: x}}}}" for u in used)
+        text = f"pipeline: {name}\nnodes: {{{nodes}, m: {{step: constant}}}}\noutputs: [m]\n"
+        (tmp_path / f"{name}.yaml").write_text(text)
+    with pytest.raises(PipelineError) as caught:
+        load(tmp_path / "d.yaml", reg)
+    assert "in a circle: c -> b -> c" in str(caught.value)
+    assert "in a circle: b -> c -> b" in str(caught.value)
+
+
 def test_a_byte_order_mark_is_no_mistake(reg: Any, tmp_path: Path) -> None:
     path = tmp_path / "bom.yaml"
     path.write_bytes(b"\xef\xbb\xbf" + text_of().encode())
@@ -701,6 +715,48 @@ def test_a_pipeline_that_another_uses_is_looked_for_beside_it_and_here(
         load("folder/p.yaml")
     missing = {path for path, stamp in found.items() if stamp is None}
     assert missing == {os.path.join("folder", "other.yaml"), "other.yaml"}
+
+
+def _files_of_level(folder: Path, level: int) -> None:
+    (folder / "parts").mkdir(parents=True)
+    deep = f"""\
+pipeline: deep
+nodes: {{m: {{step: threshold, in: frame, with: {{level: {level}}}}}}}
+outputs: [m]
+"""
+    (folder / "parts" / "deep.yaml").write_text(deep)
+    (folder / "parts" / "inner.yaml").write_text(USES_OTHER.replace("other", "deep"))
+    (folder / "parts" / "outer.yaml").write_text(
+        f"""\
+pipeline: outer
+evolves: inner.yaml
+nodes:
+  beside: {{use: inner.yaml}}
+  here: {{use: {folder.name}.yaml}}
+  own: {{step: threshold, in: frame, with: {{level: 1}}}}
+outputs: [beside, here, own]
+"""
+    )
+
+
+def test_a_pipeline_keeps_the_files_it_was_made_of_whichever_folder_is_current(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, level in (("first", 1), ("second", 3)):
+        _files_of_level(tmp_path / name, level)
+        (tmp_path / name / "first.yaml").write_text(USES_OTHER.replace("other", "parts/deep"))
+    monkeypatch.chdir(tmp_path / "first")
+    pipeline = load("parts/outer.yaml")
+    monkeypatch.chdir(tmp_path / "second")
+    changed = pipeline.with_settings({"own.level": 5})
+    again = pickle.loads(pickle.dumps(changed)).with_source("sample", name="discs")
+    for found, own in ((pipeline, 16), (changed, 0), (again, 0)):
+        assert found.file == os.path.join("parts", "outer.yaml")
+        result = found.run(np.full((4, 4), 2.0))
+        assert [result[name].count for name in ("beside", "here", "own")] == [16, 16, own]
+    monkeypatch.chdir(tmp_path)
+    shutil.rmtree(tmp_path / "first")
+    assert pipeline.with_settings({"own.level": 5}).key == changed.key
 
 
 def test_a_name_is_looked_for_as_no_file() -> None:

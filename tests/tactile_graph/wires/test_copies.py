@@ -80,11 +80,63 @@ def test_a_pipeline_of_a_file_that_is_gone_is_pickled_by_its_text(tmp_path: Path
     assert pickle.loads(pickled).key == load("circle-1").key
 
 
+INNER = (
+    "pipeline: inner\nnodes: {m: {step: threshold, in: frame, with: {level: %s}}}\noutputs: [m]\n"
+)
+OUTER = """pipeline: outer
+evolves: before.yaml
+nodes:
+  n: {use: folder/inner.yaml}
+  lower: {use: folder/inner.yaml, with: {m.level: 1.5}}
+  each: {use: folder/inner.yaml, in: parts.contacts, each: true}
+  parts: {step: split_contacts, in: [frame, n]}
+outputs: [n, lower, each]
+"""
+
+
+@pytest.mark.parametrize("change", ["edited", "gone", "elsewhere", "another"])
+def test_a_pipeline_stays_what_it_is_whatever_becomes_of_the_files_it_uses(
+    change: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    home, elsewhere = tmp_path / "home", tmp_path / "elsewhere"
+    for folder, level in ((home, 3.5), (elsewhere, 0.5)):
+        (folder / "folder").mkdir(parents=True)
+        (folder / "folder" / "inner.yaml").write_text(INNER % level)
+    (home / "before.yaml").write_text(INNER % 1.0)
+    (home / "outer.yaml").write_text(OUTER)
+    monkeypatch.chdir(home)
+    pipeline = load("outer.yaml")
+    pickled = pickle.dumps(pipeline)
+    if change == "edited":
+        (home / "folder" / "inner.yaml").write_text(INNER % 0.5)
+    elif change == "gone":
+        for file in (home / "folder" / "inner.yaml", home / "before.yaml", home / "outer.yaml"):
+            file.unlink()
+    else:
+        monkeypatch.chdir(elsewhere if change == "another" else tmp_path)
+    again = pickle.loads(pickled)
+    for same in (
+        pipeline.with_settings({}),
+        pipeline.with_source("simulate", scene="disc-1"),
+        again,
+        again.with_settings({"lower/m.level": 1.5}),
+        pickle.loads(pickle.dumps(again)),
+    ):
+        assert (same.key, same.evolves) == (pipeline.key, "before.yaml")
+    assert again.with_settings({"n/m.level": 4.5}).run(VALUES)["n"].count == 1
+
+
 def test_a_pipeline_with_a_registry_of_its_own_says_why_not() -> None:
     own = loads("pipeline: p\nnodes: {a: {step: constant}}\noutputs: [a]\n", registry=registry())
     with pytest.raises(UsageError, match="registry of its own"):
         pickle.dumps(own)
     assert copy.copy(own) is own
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_runner_whose_steps_keep_state_is_not_copied(way: Callable[[Any], Any]) -> None:
+    with pytest.raises(UsageError, match=r"a runner is not to be copied .* runner\(\) makes a new"):
+        way(load("tracks").runner())
 
 
 class TwoWordsError(Exception):

@@ -102,6 +102,27 @@ def test_places_and_times_that_are_not_finite_are_refused() -> None:
         Frame.of(np.zeros((2, 2)), device_time_s=np.nan)
 
 
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"pitch_cm": "2"}, r"a pitch is one number or two, of cm along x and y, got '2'"),
+        ({"pitch_cm": (1.0, 2.0, 3.0)}, r"a pitch is one number or two, .* got \(1.0, 2.0, 3.0\)"),
+        ({"pitch_cm": None}, r"a pitch is one number or two, .* got None"),
+        ({"origin_cm": 1.0}, r"an origin is two numbers, of cm along x and y, got 1.0"),
+        ({"origin_cm": ("0", "0")}, r"an origin is two numbers"),
+        ({"quantity": None}, r"a quantity is named by a text, got None"),
+        ({"index": 1.5}, r"an index must be a whole number, got 1.5"),
+        ({"index": "a"}, r"an index must be a whole number, got 'a'"),
+        ({"index": -1}, r"an index counts from 0, got -1"),
+        ({"time_s": "1"}, r"time_s must be a number of seconds, got '1'"),
+        ({"label": 3}, r"a label must be a text, got 3"),
+    ],
+)
+def test_what_is_of_the_wrong_type_is_told(given: dict[str, Any], told: str) -> None:
+    with pytest.raises(ValueError, match=told):
+        Frame.of(np.ones((2, 2)), **given)
+
+
 def test_readings_whose_squares_are_no_numbers_are_none() -> None:
     image = Frame.of(np.array([[1e300, 1e-300, 1.0, -1e101]])).image
     assert image.values.tolist() == [[0.0, 0.0, 1.0, 0.0]]
@@ -173,5 +194,15 @@ def test_masked_cells_are_invalid_as_nan_cells_are(dtype: type) -> None:
     assert image.valid.tolist() == [[True, False], [True, True]]
     assert image.total == 8.0
     assert image.values[0, 1] == 0.0
+
+
+@pytest.mark.parametrize("dtype", [float, int, object])
+def test_masked_cells_of_rows_are_invalid_too(dtype: type) -> None:
+    masked = np.ma.masked_equal(np.array([[1, 65535], [3, 4]], dtype=dtype), 65535)
+    for rows in (list(masked), (masked[0], [3, 4])):
+        image = Frame.of(rows).image  # type: ignore[arg-type]
+        assert image.valid is not None
+        assert image.valid.tolist() == [[True, False], [True, True]]
+        assert image.values.tolist() == [[1.0, 0.0], [3.0, 4.0]]
     assert masked.data[0, 1] == 65535
     assert Frame.of(np.ma.array([[1.0, 2.0]])).image.valid is None

@@ -170,6 +170,14 @@ def test_conditions_of_one_name_but_another_meaning_keep_nodes_apart() -> None:
     assert first.key != second.key
 
 
+def test_a_process_or_time_limit_of_its_own_keeps_a_node_apart() -> None:
+    text = HEAD + "  one: {step: add1, in: number%s}\noutputs: [one]"
+    kinds = ("", ", isolated: true", ", time_limit_s: 1", ", time_limit_s: 2", ", time_limit_s: 1")
+    pipelines = of(*(text % kind for kind in kinds))
+    merged = merge(pipelines, [["one"]] * len(pipelines))
+    assert list(merged.pipeline.nodes) == ["number", "one", "one@2", "one@3", "one@4"]
+
+
 def test_one_guard_in_two_wordings_is_one_and_each_variant_is_told_its_own() -> None:
     named = (
         "  one: {step: add1, in: number, when: big}\nconditions: {big: number > 3}\noutputs: [one]"

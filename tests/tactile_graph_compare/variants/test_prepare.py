@@ -114,6 +114,13 @@ def test_a_sweep_makes_variants_of_each_pipeline_that_has_the_setting():
         labels("circle-3", sweeps=[parse_sweep("fine.factr=2,4")])
 
 
+def test_a_sweep_of_what_no_output_needs_is_refused():
+    sweep = [parse_sweep("fine.factor=2,4")]
+    with pytest.raises(UsageError, match=r"--sweep fine.factor: all variants would be alike"):
+        labels("circle-3 --only footprint", sweeps=sweep)
+    assert len(labels("circle-3 --only footprint", "circle-3", sweeps=sweep)) == 4
+
+
 def test_common_settings_go_to_whoever_has_them_and_settings_of_one_name_are_told_in_full():
     got = labels("circle-1", "circle-3", settings={"fine.factor": 4})
     assert got == ["circle-1", "circle-3 factor=4"]

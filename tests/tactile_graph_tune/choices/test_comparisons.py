@@ -45,6 +45,11 @@ def test_alternatives_of_one_node_are_a_field_that_holds_or_not():
     assert taken_apart(nested, NODES, {}).comparisons == ()
 
 
+def test_a_comment_ends_with_its_line():
+    taken = taken_apart("mask.count > 3  # enough\nand mask.rise > 1.5", NODES, {})
+    assert [c.text for c in taken.comparisons] == ["mask.count > 3", "mask.rise > 1.5"]
+
+
 def test_parts_joined_by_and_are_told_apart_and_conditions_by_their_names():
     conditions = {"touched": "mask.count > 0", "volt": "frame.image.quantity == 'volt'"}
     taken = taken_apart("touched and fit.fits and volt", NODES, conditions)

@@ -374,6 +374,24 @@ def test_all_mistakes_of_a_file_are_shown_with_place_and_snippet(tmp_path):
     assert "2 problems" in got.stderr
 
 
+def test_a_setting_that_changes_nothing_is_told():
+    changed = ("--set", "footprint.level_v=0.25")
+    told = "--set footprint.level_v: changes nothing, for what is asked for does not need"
+    for asked, idle in (((), False), (("--only", "load"), True), (("--only", "spare"), False)):
+        got = call("run", "loads", "--source", "made", *changed, *asked, "-o", "-")
+        assert got.exit_code == 0
+        assert (told in got.stderr) is idle
+
+
+def test_what_is_asked_for_twice_is_told_and_counted_once():
+    twice = ("--only", "circle", "--only", "circle")
+    once, again = (call("run", "discs", *asked).stdout for asked in (twice[:2], twice))
+    assert [line.split("frames in")[0] for line in again.splitlines()] == [
+        line.split("frames in")[0] for line in once.splitlines()
+    ]
+    assert [*load("discs").runner(["circle", "circle"]).plan.asked] == ["circle"]
+
+
 def test_only_asks_for_nodes_and_fields_instead_of_the_outputs():
     got = call("run", "discs", "--only", "footprint.count", "--only", "footprint", "-o", "-")
     first = lines(got.stdout)[0]

@@ -130,6 +130,13 @@ def test_install_writes_the_schema_the_line_and_the_settings(mine: Path) -> None
     assert call("check", "mine.yaml").exit_code == 0
 
 
+def test_install_finds_a_pipeline_that_begins_with_a_byte_order_mark(mine: Path) -> None:
+    mine.write_text("\ufeff" + MINE, encoding="utf-8")
+    got = call("schema", "--install")
+    assert got.exit_code == 0, got.stderr
+    assert mine.read_text(encoding="utf-8") == "\ufeff" + LINE + MINE
+
+
 @pytest.mark.slow
 def test_install_again_takes_up_new_nodes_and_changes_nothing_else(mine: Path) -> None:
     assert call("schema", "--install", "mine.yaml").exit_code == 0

@@ -235,6 +235,35 @@ def noisy(image: Image, *, rng: np.random.Generator) -> float:
     return float(rng.random())
 
 
+def test_a_stream_closes_its_source_however_its_loop_is_left() -> None:
+    closed = []
+
+    def source() -> Iterator[np.ndarray[Any, Any]]:
+        try:
+            while True:
+                yield np.ones((2, 2))
+        finally:
+            closed.append(True)
+
+    pipeline = loads("{pipeline: p, nodes: {l: {step: load, in: frame}}, outputs: [l]}")
+    held = source()
+    with pipeline.stream(held) as results:
+        for result in results:
+            assert result["l"].total == 4.0
+            break
+    assert closed == [True]
+    assert next(results, None) is None
+    with pytest.raises(UsageError, match=r"the stream was closed; pipeline.stream\(\) makes a new"):
+        results.to_pandas()
+    untouched = pipeline.stream([np.ones((2, 2))])
+    untouched.close()
+    assert next(untouched, None) is None
+    own = pipeline.with_source("sample", name="discs")
+    with own.stream() as results:
+        assert next(results).frame.index == 0
+    assert next(results, None) is None
+
+
 def test_bare_arrays_of_a_stream_are_numbered_and_differ_in_their_random_numbers() -> None:
     text = "pipeline: p\nnodes:\n  a: {step: noisy, in: frame}\noutputs: [a]\n"
     pipeline = loads(text, "p.yaml", registry({"noisy": noisy}))

@@ -145,6 +145,29 @@ outputs: [graded, time_s, label]
     }  # fmt: skip
 
 
+@pytest.mark.parametrize("outputs", ["circle, circle.x_cm", "circle.x_cm, circle"])
+def test_a_field_that_is_an_output_as_well_has_a_column_of_its_own(outputs: str) -> None:
+    nodes = f"""
+pipeline: p
+nodes: {{circle: {{step: one, in: frame}}}}
+outputs: [{outputs}]
+"""
+
+    def one(image: Image) -> Circle:
+        return Circle(float(image.total), 2.0, 1.0)
+
+    pipeline = loads(nodes, "p.yaml", registry({"one": one}))
+    table = make_table(pipeline, tuple(pipeline.outputs), long=False)
+    keys = [c.key for c in table.columns]
+    assert len(keys) == len({*keys})
+    frames = [frame(3.0, i, time_s=0.5) for i in range(40)]
+    (row, *_) = table.rows(pipeline.run(frames[0]))
+    assert {*keys} - {"circle.radius_error_cm", "circle.centre_error_cm"} == {*row}
+    assert (row["circle.x_cm"], row["circle.x_cm.value"]) == (12.0, 12.0)
+    columns = table.of_block(pipeline.runner().block(FrameStack.of(frames)))
+    assert {key: columns[key][0] for key in row} == row
+
+
 @pytest.mark.parametrize(
     ("name", "expected"),
     [("vx_cm_s", ("vx", "cm/s")), ("age_s", ("age", "s")), ("area_cm2", ("area", "cm²")),
