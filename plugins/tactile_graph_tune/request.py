@@ -12,6 +12,7 @@ import numpy as np
 
 from tactile_graph import Pipeline
 from tactile_graph.errors import UsageError, did_you_mean
+from tactile_graph.inspect import idle_settings
 from tactile_graph.many import Place
 from tactile_graph.pipeline.document import assignment
 from tactile_graph_compare.variants.prepare import setting_names
@@ -97,7 +98,7 @@ class Request:
         Raises
         ------
         UsageError
-            If a setting does not exist, or there are too many combinations.
+            If a setting does not exist or changes nothing, or there are too many combinations.
         """
         known = set(setting_names(self.pipeline))
         for free in self.free:
@@ -106,6 +107,9 @@ class Request:
                 raise UsageError(
                     f"--free {free.name}: pipeline {self.pipeline.name!r} has no such setting{hint}"
                 )
+            if idle_settings(self.pipeline, [free.name]):
+                node = free.name.rpartition(".")[0]
+                raise UsageError(f"--free {free.name}: changes nothing, no output needs {node!r}")
         every = {**self.pipeline.free, **{f.name: f.values for f in self.free}}
         n = math.prod(map(len, every.values()))
         if n > MOST_VARIANTS:

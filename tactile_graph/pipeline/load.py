@@ -262,6 +262,27 @@ def _parent(name: str, document: Document, registry: Registry) -> str:
         return name
 
 
+def evolves_in_circle(graph: Graph) -> str:
+    """Return the names of pipelines that evolve from each other, ``a -> b -> a``; "" of none."""
+    registry, name = graph.registry or installed(), graph.evolves
+    file = Path(graph.folder, graph.file)
+    names, files = [graph.name], [file.resolve()]
+    while name:
+        try:
+            file = beside(name, file) or find(name, registry, str(file))
+            document = read_document(text_of_file(file), str(file))
+        except (TactileGraphError, OSError, UnicodeDecodeError):  # told where that one is loaded
+            return ""
+        if file.resolve() in files:
+            i = files.index(file.resolve())
+            return " -> ".join((*names[i:], names[i]))
+        declaration = declare(document)
+        names.append(declaration.name)
+        files.append(file.resolve())
+        name = declaration.evolves
+    return ""
+
+
 def _ordered(problems: list[Any]) -> list[Any]:
     return sorted(
         problems, key=lambda p: (p.mark.file, p.mark.line, p.mark.column) if p.mark else ("", 0, 0)

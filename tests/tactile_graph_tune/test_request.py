@@ -54,6 +54,13 @@ def test_settings_that_are_not_there_and_too_many_values_are_refused(hand_made, 
         Request(loads(LADDER), free=(free,)).variants()
 
 
+def test_a_setting_of_what_no_output_needs_is_refused(hand_made):
+    more = "nodes:\n  other: {step: pressed, in: frame}\n"
+    pipeline = loads(LADDER.replace("nodes:\n", more, 1))
+    with pytest.raises(UsageError, match=r"--free other.level_v: changes nothing, no output needs"):
+        Request(pipeline, free=(Free("other.level_v", (0.3, 0.6)),)).variants()
+
+
 def test_what_the_file_marks_is_free_and_the_command_line_comes_before_it(hand_made):
     marked = "with: {level_v: 0.5}, free: {level_v: [0.3, 0.4]}"
     pipeline = loads(LADDER.replace("with: {level_v: 0.5}", marked))

@@ -145,6 +145,8 @@ def _right(target: Target) -> Text:
 def _right_pipeline(pipeline: Pipeline) -> Text:
     from rich.text import Text
 
+    from tactile_graph.pipeline.load import evolves_in_circle
+
     n = len(pipeline.nodes)
     source = (
         f"takes frames from {pipeline.source.name}" if pipeline.source else "declares no source"
@@ -153,6 +155,8 @@ def _right_pipeline(pipeline: Pipeline) -> Text:
     text.append(f"  {n} node{'s' if n != 1 else ''} → {', '.join(pipeline.outputs)}; {source}")
     if pipeline.evolves:
         text.append(f"; evolves {pipeline.evolves}")
+        if circle := evolves_in_circle(pipeline):
+            text.append(f"\n  evolves in a circle: {circle}", style="yellow")
     if pipeline.free:
         free = (f"{name}: {', '.join(map(shown, v))}" for name, v in pipeline.free.items())
         text.append(f"\n  free for tune: {'; '.join(free)}", style="dim")

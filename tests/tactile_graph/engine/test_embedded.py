@@ -111,6 +111,7 @@ def test_a_setting_from_outside_of_a_node_that_does_not_run_is_refused(tmp_path:
             pipeline.with_settings({f"u/{name}": "square3" if "element" in name else 1})
 
 
+@pytest.mark.slow
 def test_settings_of_nodes_that_nothing_needs_are_known(tmp_path: Path) -> None:
     nodes = (
         CONTACTS + "  u: {use: inner.yaml}\n  v: {use: own.yaml, in: objects.contacts, each: true}"

@@ -43,6 +43,27 @@ def test_what_a_file_marks_free_is_told_with_its_values(hand_made: Path) -> None
     assert "\n  free for tune: footprint.level_v: 0.25, 0.5\n" in got.stdout
 
 
+@pytest.mark.parametrize(
+    ("evolves", "circle"),
+    [
+        (("2.yaml", "3.yaml", "2.yaml"), "n2 -> n3 -> n2"),
+        (("1.yaml", "discs", "loads"), "n1 -> n1"),
+        (("2.yaml", "3.yaml", "discs"), ""),
+        (("2.yaml", "3.yaml", "gone"), ""),
+    ],
+)
+def test_pipelines_that_evolve_from_each_other_are_told(
+    hand_made: Path, evolves: tuple[str, ...], circle: str
+) -> None:
+    text = (hand_made / "discs.yaml").read_text()
+    for i, parent in enumerate(evolves, 1):
+        head = f"pipeline: n{i}\nevolves: {parent}"
+        (hand_made / f"{i}.yaml").write_text(text.replace("pipeline: discs", head))
+    got = call("check", "1.yaml")
+    assert got.exit_code == 0
+    assert got.stdout.partition("\n  evolves in a circle: ")[2].strip() == circle
+
+
 def test_all_that_is_wrong_with_a_plugins_file_is_told_with_its_line(lamps: Path) -> None:
     (lamps / "dark.yaml").write_text(DARK)
     got = call("check", "dark.yaml")
