@@ -16,14 +16,13 @@ from tactile_graph_sources.readers.reading import FEWEST_COUNTED, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.layout import Layout, of_sensor, refuse_other_unit
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
+from tactile_graph_sources.readers.text.cell_places import refuse_no_grid
 from tactile_graph_sources.readers.text.stamps import Stamps
 from tactile_graph_sources.readers.words.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.words.own_number import number_text
 
 Cells = NDArray[np.float64]
 _LARGEST = 1e6
-FEWEST_OF_GRID = 0.02
-"""Share of a grid's cells that must be there for numbers to be places on it."""
 STRAY, FAR = 0.1, 1.0
 """Share of the usual number of cells of a row that makes it one of them, and how far beyond the
 others, in their own extent, a row must lie to be none."""
@@ -46,7 +45,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     Raises
     ------
     DataError
-        If nothing says where a frame ends.
+        If nothing says where a frame ends, or its places are no grid.
     """
     layout = reading.head.layout or Layout("long")
     cells, lines = _gather(reading, layout)
@@ -62,7 +61,8 @@ def read(reading: Reading) -> Iterator[Frame]:
     rows = reading.told.rows or layout.said.rows or int(row.max()) + 1 - first
     columns = reading.told.columns or layout.said.columns or int(column.max()) + 1 - first
     reading.told.agree(str(reading.path), rows, columns)
-    _refuse_scattered(reading, layout, (rows, columns), cells)
+    places = np.unique(cells[:, 2:4], axis=0)
+    refuse_no_grid(reading, layout, (rows, columns), places)
     frame, how = _frame_of_each(reading, layout, cells, (row - first) * columns + column - first)
     reading.recognised(f"{layout.why}; {how}", layout.assumed)
     said = layout.said
@@ -89,28 +89,6 @@ def read(reading: Reading) -> Iterator[Frame]:
             quantity=said.quantity,
             factor=said.factor,
             own_number=float(cells[mine[0], 0]) if "frame" in layout.roles else None,
-        )
-
-
-def _refuse_scattered(
-    reading: Reading, layout: Layout, shape: tuple[int, int], cells: Cells
-) -> None:
-    """Refuse cells that are next to none of the grid they would span, unless its shape is told.
-
-    Raises
-    ------
-    DataError
-        If what is taken for places are more likely values.
-    """
-    n_places, said = len(np.unique(cells[:, 2:4], axis=0)), layout.said
-    if (reading.told.rows or said.rows) and (reading.told.columns or said.columns):
-        return
-    if n_places < FEWEST_OF_GRID * shape[0] * shape[1]:
-        raise DataError(
-            str(reading.path),
-            f"its header names row, column and value, but the {n_places} places in it are next to "
-            f"none of {shape[0]} x {shape[1]} cells: are they values? Give it another header, or "
-            "rows and columns where they are places",
         )
 
 

@@ -1,0 +1,86 @@
+"""What the places of a table with one cell a line say: where they lie, and whether on one grid."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactile_graph.errors import DataError
+from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.tables.layout import Layout
+
+Places = NDArray[np.float64]
+FEWEST_OF_GRID = 0.02
+"""Share of a grid's cells that must be there for numbers to be places on it."""
+LEAST_STEPS, MOST_ALIKE = 2.0, 0.8
+"""Steps a line of cells must have to show that its cells lie apart, and the share of all cells that
+then lie on the same columns if lines are not offset against each other."""
+
+
+def refuse_no_grid(
+    reading: Reading, layout: Layout, shape: tuple[int, int], places: Places
+) -> None:
+    """Refuse places that are no grid: next to none of its cells, or lines offset to each other.
+
+    Parameters
+    ----------
+    reading : Reading
+    layout : Layout
+    shape : (int, int)
+        Rows and columns of the grid they would span; one that is told is believed.
+    places : ndarray, shape (n, 2)
+        Row and column of each place, once, in whole numbers.
+
+    Raises
+    ------
+    DataError
+        If what is taken for places are more likely values, or the pad is staggered.
+    """
+    said = layout.said
+    is_told = (reading.told.rows or said.rows) and (reading.told.columns or said.columns)
+    if len(places) < FEWEST_OF_GRID * shape[0] * shape[1] and not is_told:
+        raise DataError(
+            str(reading.path),
+            f"its header names row, column and value, but the {len(places)} places in it are next "
+            f"to none of {shape[0]} x {shape[1]} cells: are they values? Give it another header, "
+            "or rows and columns where they are places",
+        )
+    if layout.spacing is None and is_told:
+        return
+    steps = layout.spacing or (1.0, 1.0)
+    found = [
+        (_offset_lines(places[:, axis], places[:, 1 - axis]) * steps[1 - axis], axis)
+        for axis in (0, 1)
+    ]
+    # Offset by half, columns are so as much as rows: the cells that lie closer are neighbours.
+    apart, axis = min((one for one in found if one[0]), default=(0.0, 0))
+    if apart:
+        raise DataError(
+            str(reading.path), _staggered(("row", "column")[axis], apart, steps[1 - axis])
+        )
+
+
+def _offset_lines(line: Places, along: Places) -> int:
+    """Return how far apart the cells of each line are where lines are offset against each other.
+
+    0 where they are not, as where cells of different lines lie on the same columns.
+    """
+    order = np.lexsort((along, line))
+    steps = np.diff(along[order])[np.diff(line[order]) == 0]
+    if len(steps) < LEAST_STEPS * len(np.unique(line)):
+        return 0
+    apart = int(np.median(steps))
+    if apart < 2 or np.mean(steps % apart == 0) < MOST_ALIKE:
+        return 0
+    alike = np.bincount((along % apart).astype(np.intp)).max()
+    return apart if alike < MOST_ALIKE * len(along) else 0
+
+
+def _staggered(line: str, apart: float, step: float) -> str:
+    return (
+        f"its {line}s are offset against each other, as those of a hexagonal or staggered pad: the "
+        f"cells of a {line} lie {apart:g} apart, those of all {line}s {step:g}. Frames are grids "
+        "of rows and columns; resample the readings onto one first, in Python: "
+        "scipy.interpolate.griddata((x, y), values, (grid_x, grid_y)), with grid_x and grid_y "
+        "from numpy.meshgrid, about as far apart as the cells are"
+    )
