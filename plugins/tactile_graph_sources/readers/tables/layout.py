@@ -62,6 +62,8 @@ class Layout:
         Of the column of clock, where the settings say it.
     spacing : (float, float), optional
         Distance of rows and of columns where a long table holds positions, not their numbers.
+    one_line : str
+        ``row`` or ``column`` where the first lines lie in one of them alone; empty else.
     sensor : (int, str), optional
         The column that says which sensor a line is of, and the one that is read.
     unit : (int, str), optional
@@ -96,6 +98,7 @@ class Layout:
     time_format: str = ""
     spacing: tuple[float, float] | None = None
     first: tuple[float, float] = (0.0, 0.0)
+    one_line: str = ""
     sensor: tuple[int, str] | None = None
     unit: tuple[int, str] | None = None
     said: Described = field(default_factory=Described)

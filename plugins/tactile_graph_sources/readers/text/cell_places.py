@@ -20,7 +20,7 @@ then lie on the same columns if lines are not offset against each other."""
 def refuse_no_grid(
     reading: Reading, layout: Layout, shape: tuple[int, int], places: Places
 ) -> None:
-    """Refuse places that are no grid: next to none of its cells, or lines offset to each other.
+    """Refuse places that are no grid: next to none of its cells, or rows that are offset.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def refuse_no_grid(
     Raises
     ------
     DataError
-        If what is taken for places are more likely values, or the pad is staggered.
+        If they are more likely values, if rows are offset, or nothing says how far apart they are.
     """
     said = layout.said
     is_told = (reading.told.rows or said.rows) and (reading.told.columns or said.columns)
@@ -44,6 +44,12 @@ def refuse_no_grid(
             f"its header names row, column and value, but the {len(places)} places in it are next "
             f"to none of {shape[0]} x {shape[1]} cells: are they values? Give it another header, "
             "or rows and columns where they are places",
+        )
+    if layout.one_line and np.ptp(places[:, ("row", "column").index(layout.one_line)]) > 0.0:
+        raise DataError(
+            str(reading.path),
+            f"its first lines lie in one {layout.one_line} and later ones do not, so how far apart "
+            f"{layout.one_line}s are is not known; write whole numbers there and give pitch_cm",
         )
     if layout.spacing is None and is_told:
         return

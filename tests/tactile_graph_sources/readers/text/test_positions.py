@@ -72,3 +72,34 @@ def test_whole_numbers_that_are_offset_are_refused_unless_the_shape_is_told(
         frames_of(path)
     frames, _ = frames_of(path, rows=8, columns=18)
     assert np.count_nonzero(frames[0].image.valid) == 72
+
+
+# -- strips ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("n", [1, 3])
+@pytest.mark.parametrize("upright", [False, True])
+def test_a_strip_is_read_its_pitch_across_taken_from_along_it(
+    n: int, upright: bool, tmp_path: Path
+) -> None:
+    header, line = ("frame,y_mm,x_mm,kpa", "column") if upright else ("frame,x_mm,y_mm,kpa", "row")
+    path = write(
+        tmp_path,
+        "\n".join([header, *(f"{k},{5 * c},2.5,{c}" for k in range(n) for c in range(12))]),
+    )
+    frames, report = frames_of(path)
+    assert len(frames) == n
+    assert frames[0].image.shape == ((12, 1) if upright else (1, 12))
+    assert frames[0].image.pitch_cm == pytest.approx((0.5, 0.5))
+    np.testing.assert_array_equal(frames[0].image.values.ravel(), np.arange(12.0))
+    told = [name for name in report.counts if name.endswith(f"as there is one {line} alone")]
+    assert len(told) == 1
+    assert not frames_of(path, pitch_cm=(0.5, 2.0))[1].counts.keys() & set(told)
+
+
+def test_a_strip_that_grows_a_second_row_later_is_refused(tmp_path: Path) -> None:
+    cells = [(k, c, 0) for k in range(50) for c in range(12)]
+    cells += [(50 + k, c, r) for k in range(50) for c in range(12) for r in range(2)]
+    text = "\n".join(["frame,x_mm,y_mm,kpa", *(f"{k},{5 * c},{10 * r},9" for k, c, r in cells)])
+    with pytest.raises(DataError, match="lie in one row and later ones do not"):
+        frames_of(write(tmp_path, text))
