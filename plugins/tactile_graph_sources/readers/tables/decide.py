@@ -377,8 +377,10 @@ def _spaced(base: Layout, table: Table, apart: tuple[float, float]) -> Layout:
     if apart == (1.0, 1.0) and whole and not all(factors):
         return base
     said = base.said
-    if factors[0] and factors[1] and said.pitch_cm is None:
-        said = replace(said, pitch_cm=(apart[1] * factors[1], apart[0] * factors[0]))
+    if factors[0] and factors[1]:
+        base = replace(base, unit_cm=(factors[0], factors[1]))
+        pitch_cm = (apart[1] * factors[1], apart[0] * factors[0])
+        said = replace(said, pitch_cm=said.pitch_cm or pitch_cm)
     first = table.rows[0, base.roles["row"]], table.rows[0, base.roles["column"]]
     return replace(base, spacing=apart, first=(float(first[0]), float(first[1])), said=said)
 

@@ -62,6 +62,8 @@ class Layout:
         Of the column of clock, where the settings say it.
     spacing : (float, float), optional
         Distance of rows and of columns where a long table holds positions, not their numbers.
+    unit_cm : (float, float), optional
+        Centimetres of what the positions of rows and of columns are in, where that is a length.
     one_line : str
         ``row`` or ``column`` where the first lines lie in one of them alone; empty else.
     sensor : (int, str), optional
@@ -98,6 +100,7 @@ class Layout:
     time_format: str = ""
     spacing: tuple[float, float] | None = None
     first: tuple[float, float] = (0.0, 0.0)
+    unit_cm: tuple[float, float] | None = None
     one_line: str = ""
     sensor: tuple[int, str] | None = None
     unit: tuple[int, str] | None = None

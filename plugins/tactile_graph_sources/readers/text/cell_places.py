@@ -66,6 +66,34 @@ def refuse_no_grid(
         )
 
 
+def stated_origin_cm(
+    reading: Reading, layout: Layout, lowest: Places
+) -> tuple[float, float] | None:
+    """Return where the grid begins so that each cell's centre lies where the file states it.
+
+    Parameters
+    ----------
+    reading : Reading
+    layout : Layout
+    lowest : ndarray, shape (2,)
+        Row and column of the grid's first cell, counted from the table's first line.
+
+    Returns
+    -------
+    (float, float) or None
+        None where positions are in no unit of length.
+    """
+    pitch_cm = reading.told.pitch_cm
+    if pitch_cm is not None and reading.told.transpose:
+        pitch_cm = pitch_cm[::-1]  # a told one is of the frame as it is to be seen
+    pitch_cm = pitch_cm or layout.said.pitch_cm
+    if layout.unit_cm is None or layout.spacing is None or pitch_cm is None:
+        return None
+    place = np.add(layout.first, lowest * layout.spacing) * layout.unit_cm
+    x_cm, y_cm = np.round(place[::-1] - np.multiply(pitch_cm, 0.5), 9).tolist()
+    return x_cm, y_cm
+
+
 def _offset_lines(line: Places, along: Places) -> int:
     """Return how far apart the cells of each line are where lines are offset against each other.
 

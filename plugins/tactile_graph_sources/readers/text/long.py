@@ -16,7 +16,7 @@ from tactile_graph_sources.readers.reading import FEWEST_COUNTED, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.layout import Layout, of_sensor, refuse_other_unit
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
-from tactile_graph_sources.readers.text.cell_places import refuse_no_grid
+from tactile_graph_sources.readers.text.cell_places import refuse_no_grid, stated_origin_cm
 from tactile_graph_sources.readers.text.stamps import Stamps
 from tactile_graph_sources.readers.words.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.words.own_number import number_text
@@ -39,8 +39,9 @@ def read(reading: Reading) -> Iterator[Frame]:
 
     The cells may come in any order, so all are gathered first, as 48 bytes each. Where the cells
     of several frames come mixed, the frames follow one another by time and number. A cell the
-    file leaves out is invalid. Numbers start at 0 if any row or column is 0, else at 1. Without
-    a number, cells of one time are a frame, or those until the first place comes again.
+    file leaves out is invalid. Numbers start at 0 if any row or column is 0, else at 1; cells
+    whose places are lengths lie where these say. Without a number, cells of one time are a frame,
+    or those until the first place comes again.
 
     Raises
     ------
@@ -52,8 +53,11 @@ def read(reading: Reading) -> Iterator[Frame]:
     if not len(cells):
         return
     cells, lines = _without_strays(reading, cells, lines)
+    origin_cm = None
     if layout.spacing is not None:
-        cells[:, 2:4] -= cells[:, 2:4].min(axis=0)  # positions count from the first cell
+        lowest = cells[:, 2:4].min(axis=0)
+        cells[:, 2:4] -= lowest
+        origin_cm = stated_origin_cm(reading, layout, lowest)
     else:
         cells, lines = _from_zero(reading, cells, lines)
     row, column = cells[:, 2].astype(np.intp), cells[:, 3].astype(np.intp)
@@ -86,6 +90,7 @@ def read(reading: Reading) -> Iterator[Frame]:
             values.reshape(rows, columns),
             time_s=None if np.isnan(time_s) else float(time_s),
             pitch_cm=said.pitch_cm,
+            origin_cm=origin_cm,
             quantity=said.quantity,
             factor=said.factor,
             own_number=float(cells[mine[0], 0]) if "frame" in layout.roles else None,

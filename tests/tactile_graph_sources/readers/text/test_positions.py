@@ -103,3 +103,41 @@ def test_a_strip_that_grows_a_second_row_later_is_refused(tmp_path: Path) -> Non
     text = "\n".join(["frame,x_mm,y_mm,kpa", *(f"{k},{5 * c},{10 * r},9" for k, c, r in cells)])
     with pytest.raises(DataError, match="lie in one row and later ones do not"):
         frames_of(write(tmp_path, text))
+
+
+# -- where the grid lies -----------------------------------------------------------------------
+
+
+def of_block(row: int, column: int) -> str:
+    """Return a table of 3 x 2 cells alone, of a pad of 5 mm with its first centre at (100, -20)."""
+    cells = [(k, column + c, row + r) for k in range(3) for r in range(3) for c in range(2)]
+    lines = [f"{k},{100 + 5 * c},{-20 + 5 * r},{50 + k}" for k, c, r in cells]
+    return "\n".join(["frame,x_mm,y_mm,pressure_kpa", *lines])
+
+
+@pytest.mark.parametrize(("row", "column"), [(0, 0), (3, 5), (7, 2)])
+def test_cells_lie_where_their_lengths_say_whatever_else_is_listed(
+    row: int, column: int, tmp_path: Path
+) -> None:
+    path = write(tmp_path, of_block(row, column))
+    image = frames_of(path)[0][0].image
+    assert image.shape == (3, 2)
+    corner = (10 + 0.5 * column - 0.25, -2 + 0.5 * row - 0.25)
+    assert image.origin_cm == pytest.approx(corner)
+    assert frames_of(path, origin_cm=(0.0, 0.0))[0][0].image.origin_cm == (0.0, 0.0)
+    turned = frames_of(path, transpose=True)[0][0].image
+    assert turned.origin_cm == pytest.approx(corner[::-1])
+    assert frames_of(path, flip="both")[0][0].image.origin_cm == pytest.approx(corner)
+
+
+def test_a_told_pitch_keeps_the_first_centre_where_it_is_stated(tmp_path: Path) -> None:
+    path = write(tmp_path, of_block(0, 0))
+    image = frames_of(path, pitch_cm=(0.6, 0.4))[0][0].image
+    assert image.origin_cm == pytest.approx((9.7, -2.2))
+    turned = frames_of(path, pitch_cm=(0.6, 0.4), transpose=True)[0][0].image
+    assert turned.origin_cm == pytest.approx((-2.3, 9.8))
+
+
+def test_positions_in_no_unit_of_length_say_no_origin(tmp_path: Path) -> None:
+    path = write(tmp_path, placed("frame,x,y,value", "{k},{c}.5,{r}.5,{v}"))
+    assert frames_of(path)[0][0].image.origin_cm == (0.0, 0.0)
