@@ -12,6 +12,8 @@ from tactile_graph_sources.readers.tables.layout import Layout
 Places = NDArray[np.float64]
 FEWEST_OF_GRID = 0.02
 """Share of a grid's cells that must be there for numbers to be places on it."""
+FULL = 0.9
+"""Share of a grid's cells that must be there for its first row and column to be among them."""
 LEAST_STEPS, MOST_ALIKE = 2.0, 0.8
 """Steps a line of cells must have to show that its cells lie apart, and the share of all cells that
 then lie on the same columns if lines are not offset against each other."""
@@ -64,6 +66,40 @@ def refuse_no_grid(
         raise DataError(
             str(reading.path), _staggered(("row", "column")[axis], apart, steps[1 - axis])
         )
+
+
+def first_number(reading: Reading, layout: Layout, places: Places) -> int:
+    """Return the number of the first row and column: 0 or 1.
+
+    Parameters
+    ----------
+    reading : Reading
+    layout : Layout
+    places : ndarray, shape (n, 2)
+        Row and column of each place, once, none of them below 0.
+
+    Raises
+    ------
+    DataError
+        If the setting ``first_cell`` says what cannot be.
+    """
+    told, said = reading.told, layout.said
+    if layout.spacing is not None:
+        if told.first_cell is not None:
+            what = "first_cell: its rows and columns are positions, no numbers; leave it out"
+            raise DataError(str(reading.path), what)
+        return 0
+    lowest, highest = places.min(axis=0), places.max(axis=0)
+    if told.first_cell == 1 and lowest.min() == 0.0:
+        what = "first_cell=1, but there are cells in row or column 0; leave it out"
+        raise DataError(str(reading.path), what)
+    if told.first_cell is not None or lowest.min() == 0.0:
+        return told.first_cell or 0
+    ends = (told.rows or said.rows or np.inf, told.columns or said.columns or np.inf)
+    is_full = lowest.max() == 1.0 and len(places) >= FULL * highest.prod()
+    if not is_full and (highest < ends).all():
+        reading.assume("rows and columns counted from 1, as none is 0 (give first_cell)")
+    return 1
 
 
 def stated_origin_cm(

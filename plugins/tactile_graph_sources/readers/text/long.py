@@ -16,7 +16,11 @@ from tactile_graph_sources.readers.reading import FEWEST_COUNTED, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.layout import Layout, of_sensor, refuse_other_unit
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
-from tactile_graph_sources.readers.text.cell_places import refuse_no_grid, stated_origin_cm
+from tactile_graph_sources.readers.text.cell_places import (
+    first_number,
+    refuse_no_grid,
+    stated_origin_cm,
+)
 from tactile_graph_sources.readers.text.stamps import Stamps
 from tactile_graph_sources.readers.words.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.words.own_number import number_text
@@ -39,8 +43,8 @@ def read(reading: Reading) -> Iterator[Frame]:
 
     The cells may come in any order, so all are gathered first, as 48 bytes each. Where the cells
     of several frames come mixed, the frames follow one another by time and number. A cell the
-    file leaves out is invalid. Numbers start at 0 if any row or column is 0, else at 1; cells
-    whose places are lengths lie where these say. Without a number, cells of one time are a frame,
+    file leaves out is invalid. Numbers start as `first_number` says; cells whose places
+    are lengths lie where these say. Without a number, cells of one time are a frame,
     or those until the first place comes again.
 
     Raises
@@ -61,11 +65,11 @@ def read(reading: Reading) -> Iterator[Frame]:
     else:
         cells, lines = _from_zero(reading, cells, lines)
     row, column = cells[:, 2].astype(np.intp), cells[:, 3].astype(np.intp)
-    first = 0 if min(row.min(), column.min()) == 0 else 1
+    places = np.unique(cells[:, 2:4], axis=0)
+    first = first_number(reading, layout, places)
     rows = reading.told.rows or layout.said.rows or int(row.max()) + 1 - first
     columns = reading.told.columns or layout.said.columns or int(column.max()) + 1 - first
     reading.told.agree(str(reading.path), rows, columns)
-    places = np.unique(cells[:, 2:4], axis=0)
     refuse_no_grid(reading, layout, (rows, columns), places)
     frame, how = _frame_of_each(reading, layout, cells, (row - first) * columns + column - first)
     reading.recognised(f"{layout.why}; {how}", layout.assumed)
