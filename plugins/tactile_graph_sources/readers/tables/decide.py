@@ -301,7 +301,9 @@ def _long(base: Layout, table: Table, told: Told) -> Layout:
     base = replace(base, kind="long", roles=roles, said=said)
     base = replace(base, time_format=told.of_columns.time_format)
     base = timed(base, table) if "time" in roles else base
-    notes = *_strange_unit(base, table), *_unread(base, table)
+    base = replace(base, others=_unread(base, table))
+    left_out = ", ".join(name for _, name in base.others[:6])
+    notes = *_strange_unit(base, table), *([f"columns left out ({left_out})"] if left_out else [])
     base = replace(base, assumed=(*base.assumed, *notes))
     apart = _apart(table, roles)
     if apart[0] is None or apart[1] is None or not any(apart):
@@ -345,8 +347,8 @@ def _in_one_line(base: Layout, line: str, told: Told) -> Layout:
     return replace(base, assumed=(*base.assumed, note))
 
 
-def _unread(base: Layout, table: Table) -> tuple[str, ...]:
-    """Return the note on columns of a long table that nothing is taken from.
+def _unread(base: Layout, table: Table) -> tuple[tuple[int, str], ...]:
+    """Return the columns of a long table that nothing is taken from, and their names.
 
     What pandas writes before each line, and empty columns, hold nothing.
     """
@@ -354,14 +356,13 @@ def _unread(base: Layout, table: Table) -> tuple[str, ...]:
     read |= {found[0] for found in (base.part, base.sensor, base.unit) if found is not None}
     read |= set() if base.date is None else {base.date}
     named = table.named.names
-    names = [
-        name or f"column {k + 1}"
+    return tuple(
+        (k, name or f"column {k + 1}")
         for k, name in enumerate(named)
         if k not in read
         and any(row[k].strip() for row in table.texts)
         and (name or not counts_up(table.rows[:, k]))
-    ]
-    return (f"columns left out ({', '.join(names[:6])})",) if names else ()
+    )
 
 
 def _spaced(base: Layout, table: Table, apart: tuple[float, float]) -> Layout:

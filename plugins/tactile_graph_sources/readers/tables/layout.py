@@ -68,6 +68,8 @@ class Layout:
         ``row`` or ``column`` where the first lines lie in one of them alone; empty else.
     sensor : (int, str), optional
         The column that says which sensor a line is of, and the one that is read.
+    others : tuple of (int, str)
+        Columns of a long table that nothing is taken from, and their names.
     unit : (int, str), optional
         The column that says the unit of each line's values, and what it says of all.
     first : (float, float)
@@ -103,6 +105,7 @@ class Layout:
     unit_cm: tuple[float, float] | None = None
     one_line: str = ""
     sensor: tuple[int, str] | None = None
+    others: tuple[tuple[int, str], ...] = ()
     unit: tuple[int, str] | None = None
     said: Described = field(default_factory=Described)
     why: str = ""

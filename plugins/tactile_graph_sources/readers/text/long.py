@@ -21,6 +21,7 @@ from tactile_graph_sources.readers.text.cell_places import (
     refuse_no_grid,
     stated_origin_cm,
 )
+from tactile_graph_sources.readers.text.several_pads import refuse_several_pads
 from tactile_graph_sources.readers.text.stamps import Stamps
 from tactile_graph_sources.readers.words.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.words.own_number import number_text
@@ -71,24 +72,25 @@ def read(reading: Reading) -> Iterator[Frame]:
     columns = reading.told.columns or layout.said.columns or int(column.max()) + 1 - first
     reading.told.agree(str(reading.path), rows, columns)
     refuse_no_grid(reading, layout, (rows, columns), places)
-    frame, how = _frame_of_each(reading, layout, cells, (row - first) * columns + column - first)
+    place = (row - first) * columns + column - first
+    frame, how = _frame_of_each(reading, layout, cells, place)
     reading.recognised(f"{layout.why}; {how}", layout.assumed)
     said = layout.said
     numbers, starts, group = np.unique(frame, return_index=True, return_inverse=True)
+    refuse_several_pads(reading, layout, group, row * (column.max() + 1) + column, lines)
     reading.report.expect(len(numbers))
     order = np.argsort(group, kind="stable")
     ends = np.cumsum(np.bincount(group))
-    left_out = _unlisted(reading, cells, row * columns + column, group)
+    left_out = _unlisted(reading, cells, place, group)
     mixed = np.count_nonzero(np.diff(group)) >= len(numbers)
     by_number = np.lexsort((numbers, cells[starts, 1])) if mixed else np.argsort(starts)
     for k in by_number:
         mine = order[ends[k - 1] if k else 0 : ends[k]]
-        place = (row[mine] - first) * columns + column[mine] - first
         on_grid = (row[mine] < rows + first) & (column[mine] < columns + first)
         name = f"frame {number_text(numbers[k])}"
-        kept = _first_of_each(reading, name, place, on_grid, lines[mine])
+        kept = _first_of_each(reading, name, place[mine], on_grid, lines[mine])
         values = np.full(rows * columns, left_out)
-        values[place[kept]] = cells[mine[kept], 4]
+        values[place[mine[kept]]] = cells[mine[kept], 4]
         time_s = cells[mine[0], 1]
         yield reading.frame(
             values.reshape(rows, columns),
