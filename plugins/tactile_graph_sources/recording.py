@@ -30,6 +30,8 @@ from tactile_graph_sources.readers.words.names import ColumnsTold
 from tactile_graph_sources.readers.words.told import Told, as_typed
 
 MOST_NAMED = 5
+OF_FRAMES = ("flat", "stacked")
+"""Layouts of tables whose lines are frames or rows of them."""
 Length = Annotated[float, Gt(0)]
 
 
@@ -52,6 +54,7 @@ def recording(
     time_format: str = "",
     value_column: str = "",
     cells: str = "",
+    first_cell: Literal[0, 1] | None = None,
     report: Report,
 ) -> Iterator[Annotated[Frame, Quantity(of="quantity")]]:
     """Frames of one or more recordings, whatever device or program wrote them.
@@ -93,6 +96,9 @@ def recording(
     cells : str
         The columns of a table that are cells: numbers from 1 (``2-65``, ``2-``), or names with
         wildcards (``v*``).
+    first_cell : int, optional
+        Whether rows and columns count from 0 or from 1 in a table of one cell a line. Where neither
+        this nor the cells tell, 1 is assumed and counted in the report.
     report : Report
         Takes the format that was recognised, counters, troubles, the number of frames to expect
         and the files' digests.
@@ -119,6 +125,7 @@ def recording(
         transpose=transpose,
         flip=flip,
         skip=skip,
+        first_cell=first_cell,
     )
     index = n_places = 0
     for one, label in _files(path, report):
@@ -203,6 +210,9 @@ def opened(
         head, found = _recognised(path, told, report)
     except OSError as error:
         raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
+    if told.first_cell is not None and (head.layout is None or head.layout.kind in OF_FRAMES):
+        what = "first_cell: it is no table of one cell a line, whose rows and columns are numbered"
+        raise DataError(str(path), f"{what}; leave it out")
     reading = Reading(head, told, report, 0, label)
     reading.in_stacks = in_stacks
     frames = islice(_frames(reading, found), told.skip, None)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 from annotated_types import Ge, Gt
@@ -20,6 +20,9 @@ STIR = 1.5
 """A resting object moves once it is this many times faster than a moving one comes to rest."""
 ALONE = 2.0
 """What staying alone costs: as much as a pair at the gate whose areas have nothing in common."""
+
+GATE_CM, GATE_PITCHES = 2.6, 2.0
+"""The gate that is found: so wide, and no fewer pitches."""
 
 Reals = NDArray[np.float64]
 
@@ -46,8 +49,9 @@ class Track:
 
     Parameters
     ----------
-    gate_cm : float
-        Farthest from where it is expected that an object is still recognised.
+    gate_cm : float or 'auto'
+        Farthest from where it is expected that an object is still recognised. ``auto`` is 2.6 cm,
+        or two pitches of the contacts' cells if that is more.
     patience_s : float
         How long an object may go unseen; after longer it leaves. One that is there again right
         after a gap in the recording stays, however long the gap was.
@@ -56,7 +60,8 @@ class Track:
     agility_cm_s2 : float
         Acceleration that objects are expected to undergo. Lower: steadier velocities.
     rest_cm_s : float
-        Slower objects rest.
+        Slower objects rest. It is a speed on the pad, however large the cells are: where cells are
+        small, give less.
     confirm_frames : int
         An object is told of from the so many-th frame on in which it is seen.
     frame_s : float
@@ -74,7 +79,7 @@ class Track:
     def __init__(
         self,
         *,
-        gate_cm: Annotated[float, Gt(0)] = 2.6,
+        gate_cm: Annotated[float, Gt(0)] | Literal["auto"] = "auto",
         patience_s: Annotated[float, Ge(0)] = 0.5,
         noise_cm: Annotated[float, Gt(0)] = 0.15,
         agility_cm_s2: Annotated[float, Gt(0)] = 30.0,
@@ -83,7 +88,8 @@ class Track:
         frame_s: Annotated[float, Gt(0)] = 0.02,
         most: Annotated[int, Ge(1)] = 256,
     ) -> None:
-        self._gate_cm, self._patience_s = gate_cm, patience_s
+        self._gate_cm = GATE_CM if gate_cm == "auto" else gate_cm
+        self._gate_is_found, self._patience_s = gate_cm != "auto", patience_s
         self._noise_cm, self._agility_cm_s2 = noise_cm, agility_cm_s2
         self._rest_cm_s, self._confirm_frames = rest_cm_s, confirm_frames
         self._frame_s, self._most = frame_s, most
@@ -108,6 +114,8 @@ class Track:
         """
         seen = [c for c in contacts if c is not None]
         xy = places_cm(seen, "track")
+        if not self._gate_is_found and seen:
+            self._find_gate(seen[0])
         areas = np.array([_area_cm2(c) for c in seen])
         order = np.lexsort((areas, xy[:, 0], xy[:, 1]))
         self._go_on(gap_s)
@@ -117,6 +125,13 @@ class Track:
         here = [one for one in told if one is not None]
         left = [_record(one, "leaves", self._now_s) for one in gone if one.number]
         return Tracks(tuple(sorted([*here, *left], key=_id)), len(here), self._last_id)
+
+    def _find_gate(self, contact: Any) -> None:
+        """Take the gate from the pitch of a contact's cells, if it has cells."""
+        mask = getattr(contact, "mask", None)
+        if mask is not None:
+            self._gate_cm = max(GATE_CM, GATE_PITCHES * max(mask.pitch_cm))
+        self._gate_is_found = mask is not None
 
     def _go_on(self, gap_s: float | None) -> None:
         """Let the time since the last call pass."""

@@ -46,6 +46,29 @@ def test_an_object_appears_rests_moves_rests_and_leaves_once():
     assert (gone.x_cm, gone.y_cm) == (6.0, 3.0)
 
 
+@pytest.mark.parametrize("pitch_cm", [(10.0, 10.0), (4.0, 10.0)])
+@pytest.mark.parametrize("gate_cm", ["auto", 2.6])
+def test_on_large_cells_the_gate_grows_with_their_pitch(pitch_cm, gate_cm):
+    track = Track(gate_cm=gate_cm)
+    for k in range(12):
+        values = np.zeros((14, 4))
+        values[k : k + 2, 1:3] = 5.0
+        image = Image(values, pitch_cm)
+        tracks = track(contacts(image, image.mask(values > 0)).contacts, gap_s=0.1)
+    assert (tracks.n_so_far == 1) is (gate_cm == "auto")
+
+
+def test_on_usual_cells_the_gate_that_is_found_is_2_6_cm():
+    off = [2.59, 2.61]
+    for x, n in zip(off, (1, 2), strict=True):
+        track = Track()
+        for at in (0.0, x):
+            values = np.eye(1)
+            image = Image(values, (1.3, 1.3), (at, 0.0))
+            tracks = track(contacts(image, image.mask(values > 0)).contacts, gap_s=DT)
+        assert tracks.n_so_far == n
+
+
 def test_velocity_and_age_are_in_true_time():
     track = Track()
     now, x = 0.0, 1.0

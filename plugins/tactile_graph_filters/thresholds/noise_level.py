@@ -34,6 +34,9 @@ FEWEST_AT_REST, BEYOND = 4, 7.0
 """What stands apart from so many readings or more by so many times their range is no noise, however
 close the lowest of them lie: normal noise of up to 52 cells looks so in less than one of 1000
 frames."""
+PLAINLY = 30.0
+"""How many times as far as the lower readings lie apart the peak of few cells lies above them if
+something seems to lie there: in less than one of 100 frames of an empty pad of 3 x 3 cells."""
 LEAST_SHARE = 0.03
 """And no lower than at this share of the peak, for frames without any noise below."""
 
@@ -71,6 +74,20 @@ def noise_level(image: Image) -> float:
         return level
     raised = level_above(FEW_CELLS[few] * (base - low), base, peak)
     return max(level, min(raised, _level_below_apart(seen)))
+
+
+def is_untold(image: Image) -> bool:
+    """Return whether few cells, none of which reaches the level, leave open if something is there.
+
+    Parameters
+    ----------
+    image : Image
+        All of whose readings lie below its `noise_level`.
+    """
+    if image.values.size > 4 * len(FEW_CELLS) or (found := _lower(image)) is None:
+        return False
+    low, base, peak, seen = found
+    return seen.size > 4 and low < base and peak - base > PLAINLY * (base - low)
 
 
 def _level_below_apart(seen: Values) -> float:
@@ -196,4 +213,5 @@ class LevelledMask(Mask):
     def assumed(self) -> str:
         """What was taken that nobody said."""
         unit = unit_of(self.quantity)
-        return f"cells from {self.level:.4g} {unit} on, which is above {self.above}"
+        none = "" if self.count else "; no reading is so high"
+        return f"cells from {self.level:.4g} {unit} on, which is above {self.above}{none}"

@@ -16,7 +16,7 @@ from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask, quick_mask
 from tactile_graph.wires.stacks import Answered, ImageStack, MaskStack
 from tactile_graph_filters.nan import refuse_nan
-from tactile_graph_filters.thresholds.noise_level import LevelledMask, noise_level
+from tactile_graph_filters.thresholds.noise_level import LevelledMask, is_untold, noise_level
 from tactile_graph_filters.thresholds.recording_level import RecordingLevel, recording_level
 
 BOOL, DOUBLE = np.dtype(np.bool_), np.dtype(np.float64)
@@ -107,10 +107,21 @@ def footprints(images: ImageStack, level: float) -> Answered:
 
 
 def levelled(image: Image) -> LevelledMask:
-    """Return the valid cells above the image's own noise, and the level that this is."""
+    """Return the valid cells above the image's own noise, and the level that this is.
+
+    Raises
+    ------
+    Degenerate
+        If no cell is valid, or there are too few to tell loads from noise.
+    """
     refuse_nan(image)
     level = noise_level(image)
     mask = footprint(image, level)
+    if mask.count == 0 and is_untold(image):
+        raise Degenerate(
+            f"{image.values.size} cells, of which some seem to bear a load, are too few to tell it "
+            "from the frame's own noise; give level, or noise_of a recording"
+        )
     grid = (mask.pitch_cm, mask.origin_cm)
     return LevelledMask(mask.values, *grid, mask.count, level, image.quantity)
 
@@ -148,7 +159,8 @@ class Threshold:
     Notes
     -----
     Thesis section 3.1.1 (Horn 1986, page 47). Invalid cells are never on. What ``auto`` needs is a
-    quarter of the cells without a load.
+    quarter of the cells without a load; where some of few cells (up to 52) seem to bear one and
+    none stands out for sure, it says that it cannot tell.
     """
 
     stateless = True
@@ -200,6 +212,8 @@ class Threshold:
         ------
         RuleError
             If only a level in another unit is known than the image is in.
+        Degenerate
+            If no cell is valid, or ``auto`` has too few to tell loads from noise.
         """
         level = self._fixed_in_volts if image.quantity == "volt" else self._fixed
         empty = self._empty

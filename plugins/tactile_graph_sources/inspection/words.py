@@ -81,6 +81,8 @@ def _sensor(sensor: Sensor, looked: Looked) -> Iterator[str]:
     yield _line("rate", _rate(measured))
     yield _line("grid", f"{image.rows} rows x {image.columns} columns")
     yield _line("pitch", f"{x:.4g} x {y:.4g} cm ({known}), so {_size(sensor)}")
+    if image.origin_cm != (0.0, 0.0):
+        yield _line("origin", "({:.6g}, {:.6g}) cm, its top left corner".format(*image.origin_cm))
     unsaid = ", as no unit that is known says what they mean" if image.quantity == "raw" else ""
     yield _line("quantity", f"{image.quantity}{unsaid}")
     yield _line("range", _range(measured, unit))

@@ -363,6 +363,8 @@ class Reading:
         return (pitch[1], pitch[0]) if turned else pitch
 
     def _origin(self, own: tuple[float, float] | None) -> tuple[float, float]:
+        if own is not None and self.told.transpose:
+            own = own[::-1]
         x, y = origin = self.told.origin_cm or own or (0.0, 0.0)
         if not (abs(x) <= FARTHEST_CM and abs(y) <= FARTHEST_CM):
             text = f"an origin at ({x:g}, {y:g}) cm; allowed are {FARTHEST_CM:g} cm to either side"

@@ -162,6 +162,29 @@ def test_auto_finds_nothing_in_noise_alone():
         assert Threshold(level="auto")(Image(noise)).count == 0
 
 
+def test_auto_says_that_few_cells_cannot_tell_a_load_from_noise():
+    values = np.array([[0.0, 0.6, 1.2], [50.3, 49.1, 50.0], [49.7, 50.2, 49.5]])
+    with pytest.raises(Degenerate, match="9 cells, of which some seem to bear a load, are too few"):
+        Threshold(level="auto")(image_of(values))
+    surely = values.copy()
+    surely[0] /= 10.0
+    assert Threshold(level="auto")(image_of(surely)).count == 6
+
+
+def test_auto_says_nothing_of_loads_on_an_empty_pad_of_few_cells():
+    rng = np.random.default_rng(0)
+    n_untold = 0
+    for values in rng.normal(0.0, 1.0, (300, 3, 3)):
+        try:
+            mask = Threshold(level="auto")(image_of(values))
+        except Degenerate:
+            n_untold += 1
+        else:
+            assert mask.count == 0
+            assert mask.assumed.endswith("; no reading is so high")
+    assert n_untold <= 3
+
+
 def test_auto_leaves_invalid_cells_out_of_account():
     values = np.zeros((4, 4))
     values[0, 0], values[1, 1] = 1e6, 1.0

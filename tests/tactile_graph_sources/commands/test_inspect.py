@@ -59,6 +59,18 @@ def mat(tmp_path: Path) -> Path:
     return tmp_path / "mat.npz"
 
 
+@pytest.mark.slow
+@pytest.mark.usefixtures("nothing_tried")
+def test_where_the_grid_begins_is_said_unless_that_is_the_corner_of_the_pad(
+    tmp_path: Path,
+) -> None:
+    for name, origin_cm in (("a.npz", (9.75, -2.0)), ("b.npz", (0.0, 0.0))):
+        frame = Frame.of(np.eye(3), 0.5, quantity="counts", origin_cm=origin_cm)
+        write_npz(tmp_path / name, [frame])
+    assert "\n  origin    (9.75, -2) cm, its top left corner\n" in run(tmp_path / "a.npz")
+    assert "origin" not in run(tmp_path / "b.npz")
+
+
 @pytest.mark.slow  # much is compiled
 @pytest.mark.usefixtures("nothing_tried")
 def test_it_measures_what_the_film_was_made_with(mat: Path) -> None:

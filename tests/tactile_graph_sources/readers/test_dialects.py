@@ -23,7 +23,7 @@ from helpers_dialects import (
 )
 from helpers_export_dialects import export_dialects
 from helpers_more_dialects import more_dialects
-from helpers_recordings import frames_of, write
+from helpers_recordings import frames_of, npz_bytes, write
 from helpers_stranger_dialects import stranger_dialects
 from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
@@ -189,6 +189,19 @@ def test_order_transpose_and_flips_turn_the_cells(tmp_path: Path) -> None:
     frames, _ = frames_of(path, **told, flip="columns", skip=3)
     np.testing.assert_array_equal(frames[0].image.values, OBLONG[3][:, ::-1])
     assert [f.index for f in frames] == list(range(9))
+
+
+def test_a_files_own_pitch_and_origin_are_exchanged_with_its_rows_and_columns(
+    tmp_path: Path,
+) -> None:
+    own = {"pitch_cm": np.array([0.5, 0.7]), "origin_cm": np.array([3.0, 9.0])}
+    path = write(tmp_path, npz_bytes(values=OBLONG, quantity=np.array("counts"), **own), "own.npz")
+    image = frames_of(path, transpose=True)[0][0].image
+    assert (image.pitch_cm, image.origin_cm) == ((0.7, 0.5), (9.0, 3.0))
+    image = frames_of(path, transpose=True, origin_cm=(1.0, 2.0))[0][0].image
+    assert image.origin_cm == (1.0, 2.0)
+    image = frames_of(path, flip="both")[0][0].image
+    assert (image.pitch_cm, image.origin_cm) == ((0.5, 0.7), (3.0, 9.0))
 
 
 def test_columns_are_told_by_name_or_number(tmp_path: Path) -> None:

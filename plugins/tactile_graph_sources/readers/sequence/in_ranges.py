@@ -55,8 +55,8 @@ def ranges_of_recordings(path: Path | list[Path], **settings: Any) -> Ranges | N
         tables, there is no such way either.
     """
     paths = [Path(p) for p in path] if isinstance(path, list) else [Path(path)]
-    others = [value for name, value in settings.items() if name not in TOLD]
-    if any(others) or not paths or out_of_order(paths) is not None:
+    others = [v for name, v in settings.items() if name not in TOLD and v not in (None, "")]
+    if others or not paths or out_of_order(paths) is not None:
         return None
     told = Told.of(**{name: value for name, value in settings.items() if name in TOLD})
     labels = labels_of(paths) if len(paths) > 1 else [""]

@@ -98,7 +98,7 @@ def layout_of(
     if base.trouble:
         return base
     if table.named.is_long:
-        return _long(base, table, told.of_columns)
+        return _long(base, table, told)
     base = replace(base, assumed=(*base.assumed, *_strange_unit(base, table)))
     date = table.dates[0] if table.dates and _CLOCK in roles else None
     base = replace(base, roles=roles, date=date, colon_s=_colon_s(table, roles))
@@ -293,9 +293,9 @@ def _left_out(table: Table, taken: Collection[int]) -> tuple[str, ...]:
 # -- one cell a line ---------------------------------------------------------------------------
 
 
-def _long(base: Layout, table: Table, told: ColumnsTold) -> Layout:
+def _long(base: Layout, table: Table, told: Told) -> Layout:
     roles = dict(table.named.roles)
-    if "time" in roles and told.time_format:
+    if "time" in roles and told.of_columns.time_format:
         roles[_CLOCK] = roles.pop("time")
     elif table.clocks and roles.get("time", table.clocks[0]) in (*table.clocks, *table.dates):
         roles.pop("time", None)
@@ -306,19 +306,23 @@ def _long(base: Layout, table: Table, told: ColumnsTold) -> Layout:
     said = base.said
     if table.named.quantity != "raw":
         said = replace(said, quantity=table.named.quantity, factor=table.named.factor)
-    base = replace(base, kind="long", roles=roles, said=said, time_format=told.time_format)
+    base = replace(base, kind="long", roles=roles, said=said)
+    base = replace(base, time_format=told.of_columns.time_format)
     base = timed(base, table) if "time" in roles else base
-    notes = *_strange_unit(base, table), *_unread(base, table)
+    base = replace(base, others=_unread(base, table))
+    left_out = ", ".join(name for _, name in base.others[:6])
+    notes = *_strange_unit(base, table), *([f"columns left out ({left_out})"] if left_out else [])
     base = replace(base, assumed=(*base.assumed, *notes))
-    factors = {role: length_unit(names[role]) for role in ("row", "column")}
-    apart = [spacing(table.rows[:, roles[r]], bool(f)) for r, f in factors.items()]
-    if apart[0] is None or apart[1] is None:
+    apart = _apart(table, roles)
+    if apart[0] is None or apart[1] is None or not any(apart):
         role = "row" if apart[0] is None else "column"
         what = (
             f"its header names row ({names['row']!r}) and column ({names['column']!r}), but what "
             f"stands under {names[role]!r} are no places on a grid; write whole numbers there"
         )
         return replace(base, kind="unclear", trouble=what)
+    if not all(apart):
+        base = _in_one_line(base, "column" if apart[0] else "row", told)
     base = _spaced(base, table, (apart[0], apart[1]))
     return replace(
         base,
@@ -327,8 +331,32 @@ def _long(base: Layout, table: Table, told: ColumnsTold) -> Layout:
     )
 
 
-def _unread(base: Layout, table: Table) -> tuple[str, ...]:
-    """Return the note on columns of a long table that nothing is taken from.
+def _apart(table: Table, roles: dict[str, int]) -> list[float | None]:
+    """Return how far apart rows and columns are, as `spacing` does."""
+    axes = [table.rows[:, roles[role]] for role in ("row", "column")]
+    seen_whole = table.whole and table.n_rows == len(table.rows)
+    of_line = [seen_whole and len(np.unique(p[np.isfinite(p)])) == 1 for p in axes]
+    units = _centimetres(table, roles)
+    return [spacing(axes[k], bool(units[k]), of_line[1 - k]) for k in (0, 1)]
+
+
+def _centimetres(table: Table, roles: dict[str, int]) -> list[float | None]:
+    """Return the units of the positions of rows and columns in cm; None where there are none."""
+    return [length_unit(table.named.names[roles[role]]) for role in ("row", "column")]
+
+
+def _in_one_line(base: Layout, line: str, told: Told) -> Layout:
+    """Return the layout of cells that all lie in one row or column, as those of a strip do."""
+    base = replace(base, one_line=line)
+    if told.pitch_cm or base.said.pitch_cm:
+        return base
+    other = "column" if line == "row" else "row"
+    note = f"{line}s taken to be as far apart as {other}s, as there is one {line} alone"
+    return replace(base, assumed=(*base.assumed, note))
+
+
+def _unread(base: Layout, table: Table) -> tuple[tuple[int, str], ...]:
+    """Return the columns of a long table that nothing is taken from, and their names.
 
     What pandas writes before each line, and empty columns, hold nothing.
     """
@@ -336,26 +364,32 @@ def _unread(base: Layout, table: Table) -> tuple[str, ...]:
     read |= {found[0] for found in (base.part, base.sensor, base.unit) if found is not None}
     read |= set() if base.date is None else {base.date}
     named = table.named.names
-    names = [
-        name or f"column {k + 1}"
+    return tuple(
+        (k, name or f"column {k + 1}")
         for k, name in enumerate(named)
         if k not in read
         and any(row[k].strip() for row in table.texts)
         and (name or not counts_up(table.rows[:, k]))
-    ]
-    return (f"columns left out ({', '.join(names[:6])})",) if names else ()
+    )
 
 
 def _spaced(base: Layout, table: Table, apart: tuple[float, float]) -> Layout:
-    """Return the layout of a long table whose places are so far apart, and the pitch they give."""
-    factors = [length_unit(table.named.names[base.roles[role]]) for role in ("row", "column")]
+    """Return the layout of a long table whose places are so far apart, and the pitch they give.
+
+    Where 0 says that an axis has but one place, the other one's distance is taken.
+    """
+    factors = _centimetres(table, base.roles)
+    ratio = factors[0] / factors[1] if factors[0] and factors[1] else 1.0
+    apart = (apart[0] or apart[1] / ratio, apart[1] or apart[0] * ratio)
     places = table.rows[:, [base.roles["row"], base.roles["column"]]]
     whole = (np.nanmedian(np.round(places, 6) % 1, axis=0) == 0.0).all()
     if apart == (1.0, 1.0) and whole and not all(factors):
         return base
     said = base.said
-    if factors[0] and factors[1] and said.pitch_cm is None:
-        said = replace(said, pitch_cm=(apart[1] * factors[1], apart[0] * factors[0]))
+    if factors[0] and factors[1]:
+        base = replace(base, unit_cm=(factors[0], factors[1]))
+        pitch_cm = (apart[1] * factors[1], apart[0] * factors[0])
+        said = replace(said, pitch_cm=said.pitch_cm or pitch_cm)
     first = table.rows[0, base.roles["row"]], table.rows[0, base.roles["column"]]
     return replace(base, spacing=apart, first=(float(first[0]), float(first[1])), said=said)
 

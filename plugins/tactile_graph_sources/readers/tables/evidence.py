@@ -66,11 +66,12 @@ def is_count(row: Numbers) -> bool:
     return len(row) >= 3 and first in (0.0, 1.0) and bool((np.diff(row) == 1.0).all())
 
 
-def spacing(places: Numbers, in_length: bool) -> float | None:
+def spacing(places: Numbers, in_length: bool, of_line: bool = False) -> float | None:
     """Return the distance of neighbouring places along an axis; None where they lie anywhere.
 
     Whole numbers are places one apart, however many they leave out, unless the axis is
-    ``in_length``.
+    ``in_length``. One place alone, which tells no distance, gives 0; ``of_line`` says that it is
+    so along the other axis: then each place may stand there once.
     """
     found, n = np.unique(np.round(places[np.abs(places) < 1e9], 6), return_counts=True)
     found = found[n >= 0.2 * np.median(n)] if len(found) else found  # a damaged line is no place
@@ -78,7 +79,9 @@ def spacing(places: Numbers, in_length: bool) -> float | None:
         return None
     if not in_length and bool((found % 1 == 0).all()):
         return 1.0
-    if len(found) < 2 or 2 * len(found) > len(places):
+    if len(found) == 1:
+        return 0.0
+    if 2 * len(found) > len(places) and not of_line:
         return None
     step = float(np.diff(found).min())
     on_grid = np.abs((found - found[0]) / step - np.rint((found - found[0]) / step)) < 1e-3

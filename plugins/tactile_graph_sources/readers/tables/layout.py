@@ -64,8 +64,14 @@ class Layout:
         Of the column of clock, where the settings say it.
     spacing : (float, float), optional
         Distance of rows and of columns where a long table holds positions, not their numbers.
+    unit_cm : (float, float), optional
+        Centimetres of what the positions of rows and of columns are in, where that is a length.
+    one_line : str
+        ``row`` or ``column`` where the first lines lie in one of them alone; empty else.
     sensor : (int, str), optional
         The column that says which sensor a line is of, and the one that is read.
+    others : tuple of (int, str)
+        Columns of a long table that nothing is taken from, and their names.
     unit : (int, str), optional
         The column that says the unit of each line's values, and what it says of all.
     first : (float, float)
@@ -99,7 +105,10 @@ class Layout:
     colon_s: float = 0.0
     spacing: tuple[float, float] | None = None
     first: tuple[float, float] = (0.0, 0.0)
+    unit_cm: tuple[float, float] | None = None
+    one_line: str = ""
     sensor: tuple[int, str] | None = None
+    others: tuple[tuple[int, str], ...] = ()
     unit: tuple[int, str] | None = None
     said: Described = field(default_factory=Described)
     why: str = ""

@@ -38,7 +38,9 @@ _WORDS = {
 _LINE_COLUMNS = {
     "sensor", "sensor_id", "sensorid", "sensor_name", "sensorname", "sensor_no", "device",
     "device_id", "deviceid", "pad", "pad_id", "padid", "side", "foot", "hand", "finger",
-    "location", "capteur", "sensore", "seite",
+    "location", "capteur", "sensore", "seite", "patch", "patch_id", "patchid", "module",
+    "module_id", "moduleid", "taxel_group", "array", "array_id", "board", "board_id", "finger_id",
+    "hand_id", "foot_id", "insole", "glove",
 }  # fmt: skip
 """What a column is called that says of each line which sensor it is of."""
 _JOINTS = " _-.:/[("

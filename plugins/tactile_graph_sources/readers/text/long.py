@@ -16,14 +16,18 @@ from tactile_graph_sources.readers.reading import FEWEST_COUNTED, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.layout import Layout, of_sensor, refuse_other_unit
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
+from tactile_graph_sources.readers.text.cell_places import (
+    first_number,
+    refuse_no_grid,
+    stated_origin_cm,
+)
+from tactile_graph_sources.readers.text.several_pads import refuse_several_pads
 from tactile_graph_sources.readers.text.stamps import Stamps
 from tactile_graph_sources.readers.words.dialect import floats, refuse_underscore
 from tactile_graph_sources.readers.words.own_number import number_text
 
 Cells = NDArray[np.float64]
 _LARGEST = 1e6
-FEWEST_OF_GRID = 0.02
-"""Share of a grid's cells that must be there for numbers to be places on it."""
 STRAY, FAR = 0.1, 1.0
 """Share of the usual number of cells of a row that makes it one of them, and how far beyond the
 others, in their own extent, a row must lie to be none."""
@@ -40,77 +44,62 @@ def read(reading: Reading) -> Iterator[Frame]:
 
     The cells may come in any order, so all are gathered first, as 48 bytes each. Where the cells
     of several frames come mixed, the frames follow one another by time and number. A cell the
-    file leaves out is invalid. Numbers start at 0 if any row or column is 0, else at 1. Without
-    a number, cells of one time are a frame, or those until the first place comes again.
+    file leaves out is invalid. Numbers start as `first_number` says; cells whose places
+    are lengths lie where these say. Without a number, cells of one time are a frame,
+    or those until the first place comes again.
 
     Raises
     ------
     DataError
-        If nothing says where a frame ends.
+        If nothing says where a frame ends, or its places are no grid.
     """
     layout = reading.head.layout or Layout("long")
     cells, lines = _gather(reading, layout)
     if not len(cells):
         return
     cells, lines = _without_strays(reading, cells, lines)
+    origin_cm = None
     if layout.spacing is not None:
-        cells[:, 2:4] -= cells[:, 2:4].min(axis=0)  # positions count from the first cell
+        lowest = cells[:, 2:4].min(axis=0)
+        cells[:, 2:4] -= lowest
+        origin_cm = stated_origin_cm(reading, layout, lowest)
     else:
         cells, lines = _from_zero(reading, cells, lines)
     row, column = cells[:, 2].astype(np.intp), cells[:, 3].astype(np.intp)
-    first = 0 if min(row.min(), column.min()) == 0 else 1
+    places = np.unique(cells[:, 2:4], axis=0)
+    first = first_number(reading, layout, places)
     rows = reading.told.rows or layout.said.rows or int(row.max()) + 1 - first
     columns = reading.told.columns or layout.said.columns or int(column.max()) + 1 - first
     reading.told.agree(str(reading.path), rows, columns)
-    _refuse_scattered(reading, layout, (rows, columns), cells)
-    frame, how = _frame_of_each(reading, layout, cells, (row - first) * columns + column - first)
+    refuse_no_grid(reading, layout, (rows, columns), places)
+    place = (row - first) * columns + column - first
+    frame, how = _frame_of_each(reading, layout, cells, place)
     reading.recognised(f"{layout.why}; {how}", layout.assumed)
     said = layout.said
     numbers, starts, group = np.unique(frame, return_index=True, return_inverse=True)
+    refuse_several_pads(reading, layout, group, row * (column.max() + 1) + column, lines)
     reading.report.expect(len(numbers))
     order = np.argsort(group, kind="stable")
     ends = np.cumsum(np.bincount(group))
-    left_out = _unlisted(reading, cells, row * columns + column, group)
+    left_out = _unlisted(reading, cells, place, group)
     mixed = np.count_nonzero(np.diff(group)) >= len(numbers)
     by_number = np.lexsort((numbers, cells[starts, 1])) if mixed else np.argsort(starts)
     for k in by_number:
         mine = order[ends[k - 1] if k else 0 : ends[k]]
-        place = (row[mine] - first) * columns + column[mine] - first
         on_grid = (row[mine] < rows + first) & (column[mine] < columns + first)
         name = f"frame {number_text(numbers[k])}"
-        kept = _first_of_each(reading, name, place, on_grid, lines[mine])
+        kept = _first_of_each(reading, name, place[mine], on_grid, lines[mine])
         values = np.full(rows * columns, left_out)
-        values[place[kept]] = cells[mine[kept], 4]
+        values[place[mine[kept]]] = cells[mine[kept], 4]
         time_s = cells[mine[0], 1]
         yield reading.frame(
             values.reshape(rows, columns),
             time_s=None if np.isnan(time_s) else float(time_s),
             pitch_cm=said.pitch_cm,
+            origin_cm=origin_cm,
             quantity=said.quantity,
             factor=said.factor,
             own_number=float(cells[mine[0], 0]) if "frame" in layout.roles else None,
-        )
-
-
-def _refuse_scattered(
-    reading: Reading, layout: Layout, shape: tuple[int, int], cells: Cells
-) -> None:
-    """Refuse cells that are next to none of the grid they would span, unless its shape is told.
-
-    Raises
-    ------
-    DataError
-        If what is taken for places are more likely values.
-    """
-    n_places, said = len(np.unique(cells[:, 2:4], axis=0)), layout.said
-    if (reading.told.rows or said.rows) and (reading.told.columns or said.columns):
-        return
-    if n_places < FEWEST_OF_GRID * shape[0] * shape[1]:
-        raise DataError(
-            str(reading.path),
-            f"its header names row, column and value, but the {n_places} places in it are next to "
-            f"none of {shape[0]} x {shape[1]} cells: are they values? Give it another header, or "
-            "rows and columns where they are places",
         )
 
 

@@ -14,7 +14,7 @@ from fnmatch import fnmatch
 from typing import NamedTuple
 
 from tactile_graph.errors import did_you_mean, one_of
-from tactile_graph_sources.readers.words.units import UNIT_WORDS, value_unit
+from tactile_graph_sources.readers.words.units import UNIT_WORDS, length_unit, value_unit
 
 _UNITS_OF_TIME = {
     1.0: "s sec secs second seconds sekunde sekunden seconde secondes segundos secondi",
@@ -231,6 +231,8 @@ def named(header: Sequence[str]) -> Named:
             continue
         if len(names) > MOST_NARROW and (role not in _OF_LINES or name.lower() in _LETTERS):
             continue  # of many columns called a, b, c, … none is the rows
+        if role == "value" and _is_height(name, names):
+            continue
         roles[role] = k
         if role == "time":
             factor = SECONDS.get(unit.rstrip(".")) or SECONDS.get(name.lower())
@@ -256,6 +258,7 @@ def named(header: Sequence[str]) -> Named:
     if {"row", "column"} <= roles.keys() and "value" not in roles:
         left = [k for k, n in enumerate(names) if k not in roles.values() and n]
         left = [k for k in left if names[k].lower() not in UNIT_WORDS]
+        left = [k for k in left if not _is_height(names[k], names)]
         if len(left) == 1:
             roles["value"] = left[0]
             quantity, scale = value_unit(_parts(names[left[0]])[1] or names[left[0]])
@@ -314,6 +317,14 @@ def _is_value(name: str) -> bool:
     """Return whether a name of several words begins with one for values: ``Pression relevée``."""
     first = re.split(r"[\W_]+", name.lower(), maxsplit=1)[0]
     return len(first) > 1 and ROLES.get(first) == "value"
+
+
+def _is_height(name: str, names: Sequence[str]) -> bool:
+    """Return whether a column such as ``z_mm`` is a height, as another one holds the values."""
+    if _parts(name)[0] != "z" and length_unit(name) is None:
+        return False
+    others = [_parts(n) for n in names if n != name and length_unit(n) is None]
+    return any(ROLES.get(b) == "value" or value_unit(u or b)[0] != "raw" for b, u in others)
 
 
 def _parts(name: str) -> tuple[str, str]:

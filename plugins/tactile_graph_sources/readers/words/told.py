@@ -36,7 +36,8 @@ class Told:
     """The settings of a recording; None where the file is to be believed.
 
     ``order``, ``transpose`` and ``flip`` say how a frame's cells are turned once they are read,
-    ``skip`` how many frames are left out in front.
+    ``skip`` how many frames are left out in front, ``first_cell`` the number of the first row and
+    column where a table numbers them.
     """
 
     rows: int | None = None
@@ -50,6 +51,7 @@ class Told:
     transpose: bool = False
     flip: str = ""
     skip: int = 0
+    first_cell: int | None = None
 
     @classmethod
     def of(cls, columns_told: ColumnsTold = NOTHING_TOLD, **settings: Any) -> Told:

@@ -51,8 +51,10 @@ UNIT_WORDS = frozenset({
 NO_UNITS = frozenset({"raw", "a.u.", "au", "-", "1", "arb. units"})
 OHMS = re.compile(r"[km]?(?:ohms?|ω)")
 _CENTIMETRES = {"mm": 0.1, "cm": 1.0, "m": 100.0, "in": 2.54, "inch": 2.54, "inches": 2.54}
-_CENTIMETRES |= {f"{n}met{e}": f for n, f in (("milli", 0.1), ("centi", 1.0)) for e in ("er", "re")}
-_LENGTH = re.compile(r"([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([a-zA-Z]+)")
+_CENTIMETRES |= dict.fromkeys(("um", "\u00b5m", "\u03bcm", r"\xb5m"), 1e-4)
+_PREFIXES = {"milli": 0.1, "centi": 1.0, "micro": 1e-4}
+_CENTIMETRES |= {f"{n}met{e}": f for n, f in _PREFIXES.items() for e in ("er", "re")}
+_LENGTH = re.compile(r"([-+]?[\d.,]+(?:[eE][-+]?\d+)?)\s*([a-zA-Z\u00b5\u03bc]+)")
 
 
 def pressure_unit(text: str) -> tuple[str, float]:

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from tactile_graph_sources.readers.words.units import length_cm, pressure_unit, taken_as_they_are
+from tactile_graph_sources.readers.words.units import (
+    length_cm,
+    length_unit,
+    pressure_unit,
+    taken_as_they_are,
+)
 
 
 @pytest.mark.parametrize(
@@ -14,6 +19,9 @@ from tactile_graph_sources.readers.words.units import length_cm, pressure_unit, 
         ("0.127 centimeters", "", 0.127),
         ("0,86", "cm", 0.86),
         ("0.5 inches", "", 1.27),
+        ("800 \u00b5m", "", 0.08),
+        ("800 um", "", 0.08),
+        ("800 micrometers", "", 0.08),
         ("1 metre", "", None),
         ("wide", "", None),
         ("0 mm", "", None),
@@ -23,6 +31,11 @@ from tactile_graph_sources.readers.words.units import length_cm, pressure_unit, 
 )
 def test_lengths_become_centimetres_or_nothing(text: str, unit: str, cm: float | None) -> None:
     assert length_cm(text, unit) == (None if cm is None else pytest.approx(cm))
+
+
+@pytest.mark.parametrize("name", ["x_um", "x [\u00b5m]", "y (\u03bcm)", r"x_\xb5m"])
+def test_a_name_may_end_with_micrometres(name: str) -> None:
+    assert length_unit(name) == 1e-4
 
 
 @pytest.mark.parametrize("text", ["raw", "", "sensels", "kilofoo"])
