@@ -34,6 +34,7 @@ export class Status {
     write(byId("frames"), counted(pulse.frames));
     write(byId("lost-frames"), counted(pulse.lost));
     write(byId("shed-frames"), counted(pulse.shed));
+    write(byId("shed-before"), pulse.shed_before > 0 ? `and ${counted(pulse.shed_before)} at the start` : "");
     write(byId("latency-median"), duration(latency.median));
     write(byId("latency-p99"), duration(latency.p99));
     write(byId("page-latency"), duration(pulse.page_latency_us.median));

@@ -243,6 +243,8 @@ class Pulse:
     frames, lost, shed : int
         Since the start: done; marked by the source as lost before them; left out here because the
         next were waiting.
+    shed_before : int
+        Left out here while the pipeline got ready (code was loaded, or compiled): in no ``shed``.
     latency_us : Quantiles
         From a frame's arrival to its result, of all frames of the last seconds.
     page_latency_us : Quantiles
@@ -261,6 +263,7 @@ class Pulse:
     shed: int
     missed: int
     """Answers later than the deadline."""
+    shed_before: int
     viewers: int
     latency_us: Quantiles
     page_latency_us: Quantiles

@@ -122,8 +122,13 @@ class Session:
 
     @property
     def n_shed(self) -> int:
-        """Frames shed so far."""
+        """Frames shed so far, but for those of `n_shed_before`."""
         return self._vitals.summary.n_shed
+
+    @property
+    def n_shed_before(self) -> int:
+        """Frames shed while the pipeline got ready."""
+        return self._vitals.summary.n_shed_before
 
     # -- from beginning to end ---------------------------------------------------------------------
 
