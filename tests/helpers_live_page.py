@@ -108,8 +108,9 @@ def pulse(**more: Any) -> Plain:
     times = {"median": 800.0, "p99": 1900.0, "most": 2500.0}
     recording = {"on": False, "file": "", "frames": 0, "label": "", "lost": 0}
     return {"type": "pulse", "rate_hz": 500.2, "frames": 12345, "lost": 0, "shed": 0,
-            "shed_before": 0, "missed": 0, "viewers": 1, "latency_us": times, "page_latency_us": times, "recording": recording,
-            "paused": False, "tared": False, "kept_s": 60.0, "kept_frames": 30000,
+            "shed_before": 0, "missed": 0, "viewers": 1, "latency_us": times,
+            "page_latency_us": times, "recording": recording, "paused": False, "tared": False,
+            "kept_s": 60.0, "kept_frames": 30000,
             "state": "running", "counters": {}, "beside": None} | more  # fmt: skip
 
 

@@ -224,6 +224,7 @@ class Session:
             self._gaze.found(message)
         elif isinstance(message, wire.Tared):
             self._baseline, self._taring = message.baseline, False
+            self._gaze.again()
         elif isinstance(message, wire.Swapped):
             self._editor.swapped(message)
         elif isinstance(message, wire.Compared):
@@ -331,6 +332,8 @@ class Session:
     def _tare(self) -> None:
         self._taring = True
         self._send(wire.Tare(True))
+        if self._gaze.held:
+            self._tell("what is played is held: the tare is taken off the frames that come next")
 
     def _send(self, message: wire.ToBench) -> None:
         self._link.send(message)

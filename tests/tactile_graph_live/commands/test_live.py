@@ -389,6 +389,31 @@ def test_tare_takes_off_what_lies_there(shared: Command) -> None:
         page.until("pulse", tared=False)
 
 
+def test_what_is_held_is_shown_again_as_the_tare_has_it(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--rate", "200") as command, Page(command) as page:
+        page.until("frame")
+        page.ask("tare")
+        page.until("pulse", tared=True)
+        page.ask("pause")
+        page.until("pulse", paused=True)
+        page.ask("scrub", back_s=0.0)
+        tared = page.until("frame", latency_us=None)
+        page.ask("untare")
+        read = page.until("frame", index=tared["index"], latency_us=None)
+        assert read["pad"]["readings"] != tared["pad"]["readings"]
+
+
+def test_a_tare_while_what_is_played_is_held_says_what_it_waits_for(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--rate", "200") as command, Page(command) as page:
+        page.until("frame")
+        page.ask("pause")
+        page.until("pulse", paused=True)
+        page.ask("tare")
+        page.told("what is played is held")
+        page.ask("live")
+        page.told("tared by the median")
+
+
 def test_programs_take_every_result_in_order(shared: Command) -> None:
     with Page(shared, "results") as program:
         rows = [program.next() for _ in range(60)]
