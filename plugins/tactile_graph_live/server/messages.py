@@ -255,6 +255,8 @@ class Pulse:
         starting (frames come, none is answered yet), running, waiting (nothing comes), ended.
     trouble : str
         Why nothing comes (stalled, unplugged, ended by an error), as long as that lasts.
+    counters : mapping
+        What the source assumed and counted, in words -> how often.
     """
 
     rate_hz: float

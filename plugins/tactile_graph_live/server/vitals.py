@@ -84,7 +84,7 @@ class Vitals:
             kept_frames=its.kept_frames,
             state=its.state,
             trouble=visible(its.trouble),
-            counters=its.counters,
+            counters={visible(what): n for what, n in its.counters.items()},
             processes=_told(its.processes),
             beside=None if its.beside is None else without_nan(its.beside),
         )
