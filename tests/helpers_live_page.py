@@ -219,9 +219,9 @@ def free_port() -> int:
 
 
 @contextmanager
-def served(double: Double, port: int = 0) -> Iterator[Double]:
+def served(double: Double, port: int = 0, token: str = "") -> Iterator[Double]:
     """Serve the page with a double behind it, under the policy of the real server."""
-    door = Door("127.0.0.1", port or free_port())
+    door = Door("127.0.0.1", port or free_port(), token)
     double.address = door.address
     config = uvicorn.Config(make_app(double, door), door.host, door.port,  # type: ignore[arg-type]
                             log_level="error", ws="websockets-sansio",
