@@ -111,11 +111,15 @@ class Node:
 
 @dataclass(frozen=True)
 class Column:
-    """A column that rows may have: its key there, its name and unit for people."""
+    """A column that rows may have: its key there, its name and unit for people.
+
+    ``units`` has the unit by the quantity of the frames (`Frame.pad`) where it depends on that.
+    """
 
     key: str
     name: str
     unit: str
+    units: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -153,10 +157,14 @@ class Fault:
 
 @dataclass(frozen=True)
 class Trouble:
-    """The file as saved is wrong; the old graph keeps running. Empty: it is right again."""
+    """The file as saved is wrong; the old graph keeps running. Empty: it is right again.
+
+    ``title`` says what else is wrong: that the file is gone, or what was set on the page.
+    """
 
     version: int
     errors: tuple[Fault, ...]
+    title: str = ""
 
 
 @dataclass(frozen=True)
