@@ -33,6 +33,10 @@ SUMMARY_NS = 250_000_000
 SILENT_S = 1.0
 LATE_S = 0.5
 """Frames may come so long after word that they do not: they were on their way."""
+WOULD_END = (
+    "the source has ended, and a change would start it over, which ends the recording: "
+    "end that, then change again"
+)
 CLOSE_S = 6.0
 """The longest that is waited for a source to close before the next is opened."""
 Live = LiveResult[Result]
@@ -309,6 +313,9 @@ class Bench:
         """
         restart = message.restart or self._idle
         anew: tuple[str, ...] = ()
+        if self._idle and self._wants.frames and not message.restart:
+            self._outbox.note(wire.Swapped(message.version, WOULD_END))
+            return
         try:
             pipeline: Pipeline = pickle.loads(message.pickled)
             self._next_photographer = Photographer(pipeline, message.version)  # before a frame ran

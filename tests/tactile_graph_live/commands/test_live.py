@@ -214,6 +214,20 @@ def test_a_recording_holds_every_frame_with_its_label(shared: Command, shared_fo
     assert frames[0].truth is not None
 
 
+def test_a_source_that_has_ended_is_not_started_over_into_a_recording(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--once", "--rate", "2000") as command, Page(command) as page:
+        page.until("pulse", state="ended")
+        page.ask("record", on=True, label="")
+        page.told("recording to")
+        page.ask("set", node="footprint", setting="level_v", value=0.5)
+        (fault,) = page.until("trouble")["errors"]
+        assert "end that, then change again" in fault["text"]
+        page.ask("record", on=False)
+        page.told("recorded no frame")
+        page.ask("set", node="footprint", setting="level_v", value=0.5)
+        page.until("frame", version=3)
+
+
 def test_a_recording_begins_with_its_key_press(command: Command) -> None:
     """To make the first store of a session takes longer than this recording lasts."""
     pytest.importorskip("zarr", reason="the zarr extra is not installed")
