@@ -127,7 +127,7 @@ def test_numbers_say_where_there_is_no_room_for_them(window: Any, double: Double
     for n, expected in ((16, "numbers"), (60, "numbers: no room")):
         small = picture([0] * n * n, [100.0] * n * n, rows=n, columns=n)
         shown(page, double, pad=small, drawing=[])
-        assert word.inner_text() == expected
+        wait_for(lambda told=expected: word.inner_text() == told, expected)
 
 
 def test_a_wide_pad_fits(page: Any, double: Double) -> None:
