@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import uvicorn
 
 from tactile_graph_live.server.app import make_app
@@ -66,11 +67,13 @@ def graph(version: int = 1, names: tuple[str, ...] = NAMES, **more: Any) -> Plai
             "took_ms": 1.0, "anew": []} | more  # fmt: skip
 
 
-def picture(values: list[int] | bytes, **more: Any) -> Plain:
-    """Return cells as the page gets them."""
+def picture(values: list[int] | bytes, readings: list[float] | None = None, **more: Any) -> Plain:
+    """Return cells as the page gets them: by their colours, and what they read if that is given."""
+    exact = None if readings is None else np.array(readings, "<f8").tobytes()
     return {"rows": ROWS, "columns": COLUMNS, "pitch_cm": [PITCH_CM, PITCH_CM],
             "origin_cm": [0.0, 0.0], "quantity": "volt", "unit": "V", "low": 0.0, "high": 3.0,
-            "values": b64encode(bytes(values)).decode()} | more  # fmt: skip
+            "values": b64encode(bytes(values)).decode(),
+            "readings": exact and b64encode(exact).decode()} | more  # fmt: skip
 
 
 def frame(index: int, names: tuple[str, ...] = NAMES, **more: Any) -> Plain:
@@ -93,7 +96,7 @@ def frame(index: int, names: tuple[str, ...] = NAMES, **more: Any) -> Plain:
     row = {"output": names[-1], "item": 1, "outcome": "ok", "type": "Circle", "x_cm": x, "y_cm": y,
            "radius_cm": 2.0, "centre_error_cm": 0.1}  # fmt: skip
     return {"type": "frame", "index": index, "time_s": index / 30, "version": 1,
-            "pad": picture(cells), "drawing": [ring, cross],
+            "pad": picture(cells, [3.0 * level / 254 for level in cells]), "drawing": [ring, cross],
             "nodes": {n: {"outcome": "ran", "reason": "", "us": 12.0 + i}
                       for i, n in enumerate(names)},
             "pictures": pictures, "rows": [row], "errors": {}, "decisions": [],
@@ -104,9 +107,10 @@ def pulse(**more: Any) -> Plain:
     """Return a pulse of a bench that runs."""
     times = {"median": 800.0, "p99": 1900.0, "most": 2500.0}
     recording = {"on": False, "file": "", "frames": 0, "label": "", "lost": 0}
-    return {"type": "pulse", "rate_hz": 500.2, "frames": 12345, "lost": 0, "shed": 0, "missed": 0,
-            "viewers": 1, "latency_us": times, "page_latency_us": times, "recording": recording,
-            "paused": False, "tared": False, "kept_s": 60.0, "kept_frames": 30000,
+    return {"type": "pulse", "rate_hz": 500.2, "frames": 12345, "lost": 0, "shed": 0,
+            "shed_before": 0, "missed": 0, "viewers": 1, "latency_us": times,
+            "page_latency_us": times, "recording": recording, "paused": False, "tared": False,
+            "kept_s": 60.0, "kept_frames": 30000,
             "state": "running", "counters": {}, "beside": None} | more  # fmt: skip
 
 
@@ -215,9 +219,9 @@ def free_port() -> int:
 
 
 @contextmanager
-def served(double: Double, port: int = 0) -> Iterator[Double]:
+def served(double: Double, port: int = 0, token: str = "") -> Iterator[Double]:
     """Serve the page with a double behind it, under the policy of the real server."""
-    door = Door("127.0.0.1", port or free_port())
+    door = Door("127.0.0.1", port or free_port(), token)
     double.address = door.address
     config = uvicorn.Config(make_app(double, door), door.host, door.port,  # type: ignore[arg-type]
                             log_level="error", ws="websockets-sansio",

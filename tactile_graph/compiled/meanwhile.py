@@ -64,13 +64,15 @@ class Meanwhile:
         The process, once there is something for it to do.
     patience_s : float
         Time that plain code may take in all; none where it is negative.
+    spent_s : float
+        Time that it has taken so far.
     """
 
     def __init__(self, patience_s: float = PATIENCE_S) -> None:
         self.patience_s = patience_s
         self.under_way: subprocess.Popen[bytes] | None = None
         self._looked_s: dict[Call, float] = {}
-        self._spent_s = 0.0
+        self.spent_s = 0.0
         self._since_s = 0.0
 
     def answer(self, kernel: Kernel[Any, Any], args: tuple[Any, ...]) -> Any:
@@ -80,7 +82,7 @@ class Meanwhile:
             return kernel.call(*args)
         began = time.monotonic()
         answer = kernel.plain(*args)
-        self._spent_s += time.monotonic() - began
+        self.spent_s += time.monotonic() - began
         preparing.meanwhile(kernel.__name__, time.monotonic() - self._since_s)
         return answer
 
@@ -93,7 +95,7 @@ class Meanwhile:
         if looked_s is not None and now_s - looked_s < LOOK_S:
             return False
         self._looked_s[call] = now_s
-        if call.on_disk() or self._spent_s > self.patience_s:
+        if call.on_disk() or self.spent_s > self.patience_s:
             return True
         return not self._asked(call) if looked_s is None else not self._works()
 

@@ -33,6 +33,10 @@ SUMMARY_NS = 250_000_000
 SILENT_S = 1.0
 LATE_S = 0.5
 """Frames may come so long after word that they do not: they were on their way."""
+WOULD_END = (
+    "the source has ended, and a change would start it over, which ends the recording: "
+    "end that, then change again"
+)
 CLOSE_S = 6.0
 """The longest that is waited for a source to close before the next is opened."""
 Live = LiveResult[Result]
@@ -183,7 +187,8 @@ class Bench:
 
     def _answered(self, live: Live) -> None:
         """Take down a frame that is done."""
-        self._tally.add(live, self._run.n_waiting, self._run.deadline_us)
+        plain_s = 0.0 if self._meanwhile is None else self._meanwhile.spent_s
+        self._tally.add(live, plain_s, self._run.deadline_us)
         if self._wants.rows:
             self._outbox.row(self._row(live))
         now = live.done_ns
@@ -237,6 +242,7 @@ class Bench:
                 None if self._beside is None else self._beside.summary(),
                 self._run.processes,
                 self._why_silent(state),
+                tally.n_shed_before,
             )
         )  # fmt: skip
 
@@ -307,6 +313,9 @@ class Bench:
         """
         restart = message.restart or self._idle
         anew: tuple[str, ...] = ()
+        if self._idle and self._wants.frames and not message.restart:
+            self._outbox.note(wire.Swapped(message.version, WOULD_END))
+            return
         try:
             pipeline: Pipeline = pickle.loads(message.pickled)
             self._next_photographer = Photographer(pipeline, message.version)  # before a frame ran
@@ -393,37 +402,44 @@ def _try(pipeline: Pipeline, frame: Frame) -> None:
 class _Tally:
     """Counts frames, and keeps their latencies until they are asked for.
 
-    What was shed before the pipeline had kept up for the first time counts as the time it took to
-    get ready, and not as lost to load.
+    What was shed before the pipeline was ready counts as the time it took to get so, and not as
+    lost to load. It is ready with the first frame that came after one was answered, and was
+    answered without plain code, which stands in while the compiler works.
     """
 
     def __init__(self) -> None:
         self.n_frames = self.n_lost = self.n_missed = 0
         self.n_shed = 0
         self.n_shed_before = 0
-        self._shed_in_run = self._lost_in_run = 0
-        self.ready = False
         self._latencies: list[float] = []
+        self.begin()
 
     def begin(self) -> None:
         """Count on in a new run, whose own counts begin at 0."""
         self.ready, self._shed_in_run, self._lost_in_run = False, 0, 0
+        self._first_done_ns, self._plain_s = inf, 0.0
 
-    def add(self, live: Live, n_waiting: int, deadline_us: float | None) -> None:
-        """Count a frame."""
+    def add(self, live: Live, plain_s: float, deadline_us: float | None) -> None:
+        """Count a frame, ``plain_s`` being what plain code has taken in this run so far."""
         new = live.shed - self._shed_in_run
         self._shed_in_run = live.shed
         self.n_lost += live.lost - self._lost_in_run
         self._lost_in_run = live.lost
         self.n_frames += 1
+        self.ready = self.ready or self._gets_ready(live, plain_s)
         if not self.ready:
             self.n_shed_before += new
-            self.ready = n_waiting == 0
             return
         self.n_shed += new
         latency_us = live.latency_us
         self._latencies.append(latency_us)
         self.n_missed += deadline_us is not None and latency_us > deadline_us
+
+    def _gets_ready(self, live: Live, plain_s: float) -> bool:
+        by_plain, self._plain_s = plain_s > self._plain_s, plain_s
+        came_later = live.arrived_ns >= self._first_done_ns
+        self._first_done_ns = min(self._first_done_ns, live.done_ns)
+        return came_later and not by_plain
 
     def taken(self) -> NDArray[np.float32]:
         """Return the latencies since they were taken last, in microseconds."""

@@ -28,6 +28,8 @@ from tactile_graph.wires import Image, Mask
 
 NO_READING = 255
 HIGHEST = 254
+MOST_EXACT = 4096
+"""Cells of the largest pad whose readings go along exactly, beside their colours."""
 LONGEST_NOTE = 200
 MOST_PLACES = 4000
 """Corners or points of one shape, at most: a page is no place for more."""
@@ -44,8 +46,7 @@ def picture(image: Image, low: float | None = None, high: float | None = None) -
         What the bytes 0 and 254 stand for; the image's own range (from 0, where it has no values
         below) if not given.
     """
-    values = np.asarray(image.values, dtype=np.float64)
-    good = np.isfinite(values) if image.valid is None else image.valid & np.isfinite(values)
+    values, good = _values(image)
     seen = values if good.all() else values[good]
     low = min(float(seen.min(initial=0.0)), 0.0) if low is None else low
     high = max(float(seen.max(initial=0.0)), low) if high is None else high
@@ -53,6 +54,24 @@ def picture(image: Image, low: float | None = None, high: float | None = None) -
     levels = np.where(good, np.nan_to_num(scaled), NO_READING).astype(np.uint8)
     return {**_grid(image), "quantity": image.quantity, "unit": image.unit,
             "low": low, "high": high, "values": b64encode(levels.tobytes()).decode()}  # fmt: skip
+
+
+def readings(image: Image) -> str | None:
+    """Return what each cell reads: base64 of float64, least byte first; None for a large pad.
+
+    It is NaN where there is no reading.
+    """
+    values, good = _values(image)
+    if values.size > MOST_EXACT:
+        return None
+    return b64encode(np.where(good, values, np.nan).astype("<f8").tobytes()).decode()
+
+
+def _values(image: Image) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Return an image's values, and which of them are readings."""
+    values = np.asarray(image.values, dtype=np.float64)
+    finite = np.isfinite(values)
+    return values, finite if image.valid is None else image.valid & finite
 
 
 def _grid(grid: Image | Mask) -> Plain:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Collection, Iterable
+from math import inf
 from typing import Any
 
 from tactile_graph import Frame, Result
@@ -10,11 +12,12 @@ from tactile_graph.draw.display import display_list, truth_list
 from tactile_graph.foreign_text import visible
 from tactile_graph.inspect import FRAME, as_data, make_table, without_nan
 from tactile_graph.wires import Image
-from tactile_graph_live.bench.shapes import Plain, picture, shapes
+from tactile_graph_live.bench.shapes import Plain, picture, readings, shapes
 from tactile_graph_live.server import messages
 
 LONGEST_REASON = 400
 MOST_ROWS = 200
+KEPT_S = 30.0
 LEAD = ("frame", "time_s", "label")
 
 
@@ -90,7 +93,8 @@ class Photographer:
             yield {k: _cell(v) for k, v in row.items() if k not in LEAD and v is not None}
 
     def _pad(self, frame: Frame) -> Plain:
-        return picture(frame.image, *self._range.of(frame.image))
+        image = frame.image
+        return {**picture(image, *self._range.of(image)), "readings": readings(image)}
 
     @staticmethod
     def _drawing(result: Result) -> list[Plain]:
@@ -104,27 +108,33 @@ class Photographer:
 
 
 class Range:
-    """The range of colours: what the pad has shown so far, so that they mean the same all along."""
+    """The range of colours: from 0 to what the pad has shown of late, so that they stay the same.
+
+    A spike is forgotten after `KEPT_S`, or twice that at most.
+    """
 
     def __init__(self) -> None:
         self._of: tuple[Any, ...] = ()
-        self._low = self._high = 0.0
+        self._since_s = -inf
+        self._before = self._now = (0.0, 0.0)
 
     def of(self, image: Image) -> tuple[float, float]:
-        """Return lowest and highest value so far of images of this kind."""
+        """Return lowest and highest value of late of images of this kind."""
         kind = (image.shape, image.quantity)
         if self._of and kind != self._of:
-            self._low = self._high = 0.0
-        if kind != self._of:
-            self._of = kind
+            self._before = self._now = (0.0, 0.0)
+        self._of = kind
         values = image.filled(0.0)
-        self._low = min(self._low, float(values.min(initial=0.0)))
-        self._high = max(self._high, float(values.max(initial=0.0)))
-        return self._low, self._high
+        self.widen(float(values.min(initial=0.0)), float(values.max(initial=0.0)))
+        lows, highs = zip(self._before, self._now, strict=True)
+        return min(lows), max(highs)
 
     def widen(self, low: float, high: float) -> None:
         """Have the range hold these."""
-        self._low, self._high = min(self._low, low), max(self._high, high)
+        now_s = time.perf_counter()
+        if now_s - self._since_s > KEPT_S:
+            self._since_s, self._before, self._now = now_s, self._now, (0.0, 0.0)
+        self._now = min(self._now[0], low), max(self._now[1], high)
 
 
 def _fared(story: Any) -> Plain:

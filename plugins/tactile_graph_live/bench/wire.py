@@ -118,7 +118,8 @@ class Summary:
     """All frames since the last summary in numbers; counts are since the start.
 
     ``latencies_us`` has one for each frame, float32. ``processes`` says how those of nodes fare
-    that run in one of their own, ``trouble`` why no frame comes, as long as that lasts.
+    that run in one of their own, ``trouble`` why no frame comes, as long as that lasts. Frames shed
+    while the pipeline got ready are ``n_shed_before``, and not in ``n_shed``.
     """
 
     latencies_us: NDArray[np.float32]
@@ -134,6 +135,7 @@ class Summary:
     beside: dict[str, Any] | None = None
     processes: Mapping[str, ProcessState] = field(default_factory=dict)
     trouble: str = ""
+    n_shed_before: int = 0
 
 
 @dataclass(frozen=True)

@@ -127,8 +127,9 @@ def live(pipeline: str | None, recordings: tuple[str, ...], **options: Any) -> N
             )
         except KeyboardInterrupt:  # a second Ctrl-C
             click.get_current_context().exit(128 + signal.SIGINT)
-    n, shed = session.n_frames, session.n_shed
-    say(f"\n{n} frame{'s' if n != 1 else ''}, {shed} left out under load")
+    n, before = session.n_frames, session.n_shed_before
+    ready = f", {before} while it got ready" if before else ""
+    say(f"\n{n} frame{'s' if n != 1 else ''}, {session.n_shed} left out under load{ready}")
     if number not in (0, signal.SIGINT):
         click.get_current_context().exit(128 + number)
 

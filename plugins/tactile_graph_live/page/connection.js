@@ -5,6 +5,7 @@ import { byId, mark, own, show, write } from "./dom.js";
 const FIRST_WAIT_S = 0.25;
 const LONGEST_WAIT_S = 5;
 const SILENCE_S = 6;
+const REFUSALS = 3; // tries after which it is asked why
 const RUNS = { starting: "getting ready", waiting: "waiting for frames", ended: "the source ended", paused: "paused" };
 
 export class Connection {
@@ -13,6 +14,7 @@ export class Connection {
     this.take = take;
     this.changed = changed;
     this.waits = 0;
+    this.why = "";
     this.socket = null;
     byId("retry").addEventListener("click", () => this.open());
     addEventListener("online", () => this.open());
@@ -53,6 +55,7 @@ export class Connection {
     }
     if (this.waits || !this.up) {
       this.waits = 0;
+      this.why = "";
       this.up = true;
       this.tell("connected", "connected");
       show(byId("lost"), false);
@@ -82,11 +85,24 @@ export class Connection {
     const count = () => {
       const left = Math.max(0, (due - performance.now()) / 1000);
       const rounds = `${this.waits} ${this.waits === 1 ? "try" : "tries"}`;
-      write(byId("lost-text"), `What you see is the last picture. Trying again in ${left.toFixed(0)} s (${rounds} so far).`);
+      write(byId("lost-text"), `${this.why}What you see is the last picture. Trying again in ${left.toFixed(0)} s (${rounds} so far).`);
     };
     count();
     this.counting = setInterval(count, 1000);
     this.timer = setTimeout(() => this.open(), wait * 1000);
+    if (this.waits >= REFUSALS) this.ask().then(count);
+  }
+
+  /** Find out whether the server is gone or refuses this page: of a WebSocket no page is told. */
+  async ask() {
+    let why = "";
+    try {
+      const answer = await fetch("icon.svg", { cache: "no-store", signal: AbortSignal.timeout(SILENCE_S * 1000) });
+      if (answer.status === 403) why = `The server refuses this page. ${(await answer.text()).trim()} One that was started anew has another token. `;
+    } catch {
+      // it is gone
+    }
+    this.why = this.up ? "" : why;
   }
 
   tell(state, text) {

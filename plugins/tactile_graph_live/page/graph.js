@@ -8,7 +8,7 @@ import { faresInWords, withinOf } from "./processes.js";
 import { ordered, rails } from "./rails.js";
 
 const SVG = "http://www.w3.org/2000/svg";
-const ROW = 62;
+const ROW = 3.875 * parseFloat(getComputedStyle(document.documentElement).fontSize); // as the style's --row
 const LANE = 13;
 const TIMES = 31;
 

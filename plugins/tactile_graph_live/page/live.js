@@ -86,7 +86,7 @@ const TAKE = {
     card.take(graph);
     look([...nodes.inSight]);
   },
-  trouble: (message) => trouble(message.errors),
+  trouble,
   frame(message) {
     const waiting = latest !== null;
     if (waiting) answer(latest); // never drawn: the newer one is

@@ -43,7 +43,7 @@ export const counted = (n) => (Number.isFinite(n) ? n.toLocaleString("en").repla
 /** Return a number that was told without the zeros at the end of its decimals: `50.0 ms` is `50 ms`. */
 export const short = (text) => text.replace(/(\.\d*?)0+(?=\D|$)/, "$1").replace(/\.(?=\D|$)/, "");
 
-/** Return about `most` round numbers between two ends. */
+/** Return about `most` round numbers between two ends, two at least. */
 export function ticks(low, high, most) {
   const span = high - low;
   if (!(span > 0) || !Number.isFinite(span)) return [low];
@@ -54,5 +54,5 @@ export function ticks(low, high, most) {
   for (let n = Math.ceil(low / step - 1e-9); n * step <= high + step * 1e-9; n += 1) {
     found.push(Number((n * step).toPrecision(10)));
   }
-  return found;
+  return found.length > 1 ? found : ticks(low, high, Math.max(1, most) + 1);
 }

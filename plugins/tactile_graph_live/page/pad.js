@@ -3,7 +3,7 @@
 
 import { byId, fitted, make, mark, write } from "./dom.js";
 import { ticks } from "./numbers.js";
-import { View, drawGrid, drawNumbers, drawShapes, extentOf, heatStops, valueAt } from "./paint.js";
+import { View, drawGrid, drawNumbers, drawShapes, extentOf, heatStops, inDigits, isExact, valueAt } from "./paint.js";
 import { colour, remember, remembered } from "./theme.js";
 
 const MARGIN = { left: 38, top: 8, right: 72, bottom: 34 };
@@ -99,7 +99,8 @@ export class Pad {
       width - MARGIN.left - MARGIN.right, height - MARGIN.top - MARGIN.bottom);
     this.view = view;
     drawGrid(context, view, grid, byId("smooth").checked);
-    if (byId("numbers").checked) drawNumbers(context, view, grid);
+    const room = !byId("numbers").checked || drawNumbers(context, view, grid);
+    write(byId("numbers-word"), room ? "numbers" : "numbers: no room");
     this.drawTrails(context, view);
     context.save();
     context.beginPath();
@@ -256,7 +257,7 @@ export class Pad {
     const value = valueAt(grid, row, column);
     const x = left + (column + 0.5) * grid.pitch_cm[0];
     const y = top + (row + 0.5) * grid.pitch_cm[1];
-    const read = value === null ? "no reading" : `${rounded(value)} ${grid.unit || ""}`.trim();
+    const read = value === null ? "no reading" : reading(grid, value);
     return `Row ${row}, column ${column}: ${read}, at ${x.toFixed(1)}, ${y.toFixed(1)} cm`;
   }
 
@@ -272,13 +273,13 @@ export class Pad {
       }
     }
     const size = `The pad, ${grid.rows} rows of ${grid.columns} cells, ${measured(grid)}`;
-    return best ? `${size}; highest ${rounded(best[0])} at row ${best[1]}, column ${best[2]}` : size;
+    return best ? `${size}; highest ${reading(grid, best[0])} at row ${best[1]}, column ${best[2]}` : size;
   }
 }
 
 
-/** As fine as the levels between a cell's lowest and highest tell. */
-const rounded = (value) => String(Number(value.toPrecision(3)));
+/** Return a reading in words, and whether it is told by its colour alone. */
+const reading = (grid, value) => `${isExact(grid) ? "" : "about "}${inDigits(grid, value, 4)} ${grid.unit || ""}`.trim();
 
 const gridOf = (pad) => [pad.rows, pad.columns, ...pad.pitch_cm, ...pad.origin_cm];
 

@@ -11,6 +11,8 @@ const STOPS = [
 const BROKEN = 255;
 const FARTHEST_PX = 1e5;
 const LONGEST_WORD = 40;
+const SMALLEST_TEXT_PX = 6;
+const SANS = "ui-sans-serif, system-ui, sans-serif";
 
 const packed = ([r, g, b]) => ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
 
@@ -40,10 +42,26 @@ export function levelsOf(grid) {
   return grid.levels;
 }
 
-/** Return a cell's value, as fine as its level tells, or null without a reading. */
+/** Whether it is known what cells read; of a large pad only their colours are. */
+export const isExact = (grid) => Boolean(grid.readings);
+
+/** Return what a cell reads, as fine as its colour tells where no more is known; null without a reading. */
 export function valueAt(grid, row, column) {
-  const level = levelsOf(grid)[row * grid.columns + column];
-  return level === undefined || level === BROKEN ? null : grid.low + (level / 254) * (grid.high - grid.low);
+  const cell = row * grid.columns + column;
+  const level = levelsOf(grid)[cell];
+  if (level === undefined || level === BROKEN) return null;
+  if (isExact(grid)) return readingsOf(grid)[cell];
+  const step = (grid.high - grid.low) / 254;
+  const fine = 10 ** Math.floor(Math.log10(step || 1));
+  return Number((Math.round((grid.low + level * step) / fine) * fine).toPrecision(10));
+}
+
+function readingsOf(grid) {
+  if (grid.exact === undefined) {
+    const bytes = Uint8Array.from(atob(grid.readings), (c) => c.charCodeAt(0));
+    grid.exact = new Float64Array(bytes.buffer);
+  }
+  return grid.exact;
 }
 
 export function extentOf(grid) {
@@ -97,25 +115,40 @@ export function drawGrid(context, view, grid, smooth = false, paints = HEAT) {
   context.drawImage(scratch, x, y, view.x(extent.right) - x, view.y(extent.bottom) - y);
 }
 
-/** Draw the numbers of a grid's cells, where there is room. */
+/** Draw the numbers of a grid's cells; return whether there is room for them. */
 export function drawNumbers(context, view, grid) {
-  const side = Math.min(...grid.pitch_cm) * view.perCm;
-  if (side < 18) return;
-  context.font = `${Math.min(13, side / 2.6)}px ui-sans-serif, system-ui, sans-serif`;
+  const [wide, high] = grid.pitch_cm.map((cm) => cm * view.perCm);
+  if (Math.min(wide, high) < SMALLEST_TEXT_PX) return false;
+  const texts = Array.from({ length: grid.rows * grid.columns }, (_, cell) => {
+    const value = valueAt(grid, Math.floor(cell / grid.columns), cell % grid.columns);
+    return value === null ? "" : inDigits(grid, value, 3);
+  });
+  context.font = `100px ${SANS}`;
+  const longest = texts.reduce((long, text) => (text.length > long.length ? text : long), "");
+  const size = Math.min(13, high / 1.3, (90 * wide) / context.measureText(longest).width);
+  if (size < SMALLEST_TEXT_PX) return false;
+  context.font = `${size}px ${SANS}`;
   context.textAlign = "center";
   context.textBaseline = "middle";
   const extent = extentOf(grid);
   const levels = levelsOf(grid);
-  const digits = grid.high - grid.low >= 100 ? 0 : grid.high - grid.low >= 10 ? 1 : 2;
   for (let row = 0; row < grid.rows; row += 1) {
     for (let column = 0; column < grid.columns; column += 1) {
-      const value = valueAt(grid, row, column);
-      if (value === null) continue;
-      context.fillStyle = levels[row * grid.columns + column] > 140 ? "#10131a" : "#f4f6fa";
-      context.fillText(value.toFixed(digits), view.x(extent.left + (column + 0.5) * grid.pitch_cm[0]),
+      const cell = row * grid.columns + column;
+      context.fillStyle = levels[cell] > 140 ? "#10131a" : "#f4f6fa";
+      context.fillText(texts[cell], view.x(extent.left + (column + 0.5) * grid.pitch_cm[0]),
         view.y(extent.top + (row + 0.5) * grid.pitch_cm[1]));
     }
   }
+  return true;
+}
+
+/** Return a reading in so many digits, a whole number in all of its own. */
+export function inDigits(grid, value, digits) {
+  const residue = 1e-9 * Math.max(Math.abs(grid.low), Math.abs(grid.high)); // of a subtraction
+  if (Math.abs(value) < residue) return "0";
+  if (Number.isInteger(value) || Math.abs(value) >= 10 ** (digits - 1)) return value.toFixed(0);
+  return String(Number(value.toPrecision(digits)));
 }
 
 /** Draw a display list: its grids first, then its lines; `scale` is how thick those are. */
@@ -160,7 +193,7 @@ function stroke(context, path, ink, width) {
 }
 
 function drawWord(context, view, { x, y, text }, ink, scale) {
-  context.font = `600 ${Math.max(9, 13 * scale)}px ui-sans-serif, system-ui, sans-serif`;
+  context.font = `600 ${Math.max(9, 13 * scale)}px ${SANS}`;
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.setLineDash([]);

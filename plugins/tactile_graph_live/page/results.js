@@ -2,7 +2,7 @@
 // over the last seconds; a line for each thing of an output that gives several.
 
 import { History, sparkline } from "./charts.js";
-import { WORDS_MS, byId, make, mark, show, write } from "./dom.js";
+import { WORDS_MS, byId, make, mark, own, show, write } from "./dom.js";
 import { named, told } from "./numbers.js";
 
 const LEAD = new Set(["output", "item", "outcome", "type"]);
@@ -23,16 +23,26 @@ export class Results {
     const key = JSON.stringify([graph.outputs, graph.columns]);
     if (key === this.key) return;
     this.key = key;
+    this.columns = new Map(graph.columns.map((column) => [column.key, column]));
+    this.begin();
+  }
+
+  /** Begin the tables anew. */
+  begin() {
     this.lines.clear();
     this.several.clear();
-    this.columns = new Map(graph.columns.map((column) => [column.key, column]));
     byId("result-rows").replaceChildren();
     byId("contact-rows").replaceChildren();
     byId("contact-head").replaceChildren();
+    delete byId("contact-head").dataset.key;
     show(byId("contacts"), false);
   }
 
   paint(frame) {
+    if (this.quantity !== frame.pad.quantity) {
+      this.quantity = frame.pad.quantity; // by which units go
+      this.begin();
+    }
     const now = performance.now();
     const words = now - this.wordsAt > WORDS_MS;
     for (const row of frame.rows) if (row.item > 1) this.split(row.output);
@@ -99,7 +109,7 @@ export class Results {
   label(field) {
     const column = this.columns.get(field);
     const [name, unit] = named(field.split(".").slice(-2).join(" "));
-    return [column && column.name !== field ? column.name : name.replace(/ error$/, ", off by"), column?.unit || unit];
+    return [column && column.name !== field ? column.name : name.replace(/ error$/, ", off by"), column?.unit || own(column?.units ?? {}, this.quantity) || unit];
   }
 
   write(line, present, now) {

@@ -106,7 +106,10 @@ class Control {
 
   changed(input) {
     const value = this.read(input);
-    if (value === undefined) return;
+    if (value === undefined) {
+      put(input, this.runs); // no number: what runs is shown again
+      return;
+    }
     this.touchedAt = performance.now();
     for (const other of this.inputs) if (other !== input) put(other, value);
     this.pending = value;
@@ -131,6 +134,7 @@ class Control {
     this.element.classList.toggle("changed", setting.changed);
     this.reset.disabled = !setting.changed;
     clearTimeout(this.later);
+    this.runs = setting.value;
     const handsOffMs = this.touchedAt + HANDS_OFF_MS - performance.now();
     if (!refused && handsOffMs > 0) {
       this.later = setTimeout(() => this.take(setting, false), handsOffMs);

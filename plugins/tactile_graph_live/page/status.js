@@ -8,6 +8,7 @@ const KEPT_S = 60;
 const STAYS_MS = 6000;
 const MOST_TOLD = 4;
 const MOST_DIFFERENCES = 3;
+const OF_THE_BENCH = new Set(["frames", "troubles"]); // told elsewhere
 const WORDS = { note: "", warning: "Warning", error: "Error" };
 
 export class Status {
@@ -34,6 +35,7 @@ export class Status {
     write(byId("frames"), counted(pulse.frames));
     write(byId("lost-frames"), counted(pulse.lost));
     write(byId("shed-frames"), counted(pulse.shed));
+    write(byId("shed-before"), pulse.shed_before > 0 ? `and ${counted(pulse.shed_before)} at the start` : "");
     write(byId("latency-median"), duration(latency.median));
     write(byId("latency-p99"), duration(latency.p99));
     write(byId("page-latency"), duration(pulse.page_latency_us.median));
@@ -42,6 +44,7 @@ export class Status {
     byId("missed-stat").classList.toggle("alarm", pulse.missed > 0);
     byId("lost-stat").classList.toggle("alarm", pulse.lost > 0);
     byId("shed-stat").classList.toggle("alarm", pulse.shed > 0);
+    this.source(pulse.counters ?? {});
     this.beside(pulse.beside);
     this.keep(pulse, performance.now());
     this.chart();
@@ -60,6 +63,14 @@ export class Status {
     this.rate.push(now, pulse.rate_hz);
     this.lost.push(now, Math.max(0, pulse.lost - before.lost) / seconds); // below 0: a new server
     this.shed.push(now, Math.max(0, pulse.shed - before.shed) / seconds);
+  }
+
+  /** Tell what the source assumes and counts; recordings are counted each time they are played. */
+  source(counters) {
+    const said = Object.entries(counters).filter(([what, n]) => n > 0 && !OF_THE_BENCH.has(what))
+      .map(([what, n]) => (what.startsWith("recordings ") ? what : `${counted(n)} ${what}`));
+    show(byId("source-stat"), said.length > 0);
+    write(byId("source-text"), said.join("; "));
   }
 
   beside(beside) {

@@ -75,11 +75,12 @@ function coloured(line) {
 }
 
 /** Show what is wrong with the file as it was saved, or that it is right again. */
-export function trouble(errors) {
+export function trouble({ errors, title }) {
   const banner = byId("trouble");
   show(banner, errors.length > 0);
   const many = `${errors.length} errors`;
-  write(byId("trouble-title"), `The file as saved has ${errors.length === 1 ? "an error" : many}. The old graph still runs.`);
+  const said = title || `The file as saved has ${errors.length === 1 ? "an error" : many}.`;
+  write(byId("trouble-title"), `${said} The old graph still runs.`);
   const key = JSON.stringify(errors);
   if (banner.dataset.key === key) return;
   banner.dataset.key = key;

@@ -17,6 +17,7 @@ from tactile_graph_live.server.yaml_settings import Settings, text_with
 
 MOST_FAULTS = 50
 LONGEST_FAULT = 2000
+LONGEST_NAME = 100
 
 
 @dataclass(frozen=True)
@@ -205,12 +206,16 @@ def save(folder: Path, name: str, text: str, file: str) -> Path:
     from tactile_graph.inspect import moved
 
     stem = name.removesuffix(".yml").removesuffix(".yaml")
+    if len(stem) > LONGEST_NAME:
+        raise UsageError(
+            f"'{visible(name)[:20]}…': a name is of letters, digits, '-', '_' and '.', "
+            f"{LONGEST_NAME} at most, got {len(stem)}"
+        )
     if not stem or not all(c.isascii() and (c.isalnum() or c in "-_.") for c in stem) or (
-        stem.startswith((".", "-")) or len(stem) > 100
+        stem.startswith((".", "-"))
     ):  # fmt: skip
         raise UsageError(
-            f"{visible(name)[:100]!r}: a name is of letters, digits, '-', '_' and '.', without a "
-            "folder"
+            f"{visible(name)!r}: a name is of letters, digits, '-', '_' and '.', without a folder"
         )
     path = folder / f"{stem}.yaml"
     if path.exists() or path.is_symlink():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import pickle
 import time
 from collections.abc import Callable
@@ -219,7 +220,12 @@ class Editor:
             self._tell(self._of_file)
 
     def _tell(self, errors: tuple[Fault, ...]) -> None:
-        trouble = Trouble(self._version, errors)
+        title = ""
+        if not os.path.lexists(self.now.draft.pipeline.file):
+            title = "The file is gone."
+        elif errors and not self._of_file:
+            title = "What was set does not run."
+        trouble = Trouble(self._version, errors, title)
         self.trouble = trouble if errors else None
         self._wrong(trouble)
 

@@ -10,6 +10,7 @@ from tactile_graph.docstring import parameters
 from tactile_graph.draw.blocks import blocks, wires
 from tactile_graph.foreign_text import visible
 from tactile_graph.inspect import Graph, Node, make_table, plain
+from tactile_graph.quantities import unit_of
 from tactile_graph.steps.settings import adapter
 from tactile_graph.steps.signature import REQUIRED
 from tactile_graph.steps.signature import Setting as StepSetting
@@ -51,7 +52,10 @@ def graph_message(
 def _columns(pipeline: Pipeline) -> Iterator[messages.Column]:
     for column in make_table(pipeline, tuple(pipeline.outputs), True).columns:
         words, unit = words_and_unit(column.key)
-        yield messages.Column(column.key, words, unit or column.unit)
+        units = {
+            of_frames: unit_of(its) for of_frames, its in (column.quantities or {}).items() if its
+        }
+        yield messages.Column(column.key, words, unit or column.unit, units)
 
 
 # -- settings ------------------------------------------------------------------------------------

@@ -32,6 +32,7 @@ class Lookback:
         self._photographer = Photographer(pipeline, version)
         self.lead = LEAD if make_plan(pipeline, tuple(pipeline.outputs)).stateful else 0
         self._runner: Runner[Result] | None = None
+        self._tared = False
 
     def frame(self, kept: Kept, shown: Collection[str], pad: dict[str, Any] | None) -> Frame:
         """Return what the last of the frames comes to, after those before it.
@@ -48,6 +49,9 @@ class Lookback:
         for frame in kept.frames:
             result = runner(less(frame, kept.baseline))
         runner.forget()  # looked at again, it is run again
+        if self._tared != (kept.baseline is not None):
+            self._tared = not self._tared
+            self._photographer.forget_range()
         if pad is not None:
             self._photographer.like(pad)
         self._photographer.shown = shown

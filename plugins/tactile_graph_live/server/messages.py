@@ -111,11 +111,15 @@ class Node:
 
 @dataclass(frozen=True)
 class Column:
-    """A column that rows may have: its key there, its name and unit for people."""
+    """A column that rows may have: its key there, its name and unit for people.
+
+    ``units`` has the unit by the quantity of the frames (`Frame.pad`) where it depends on that.
+    """
 
     key: str
     name: str
     unit: str
+    units: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -153,10 +157,14 @@ class Fault:
 
 @dataclass(frozen=True)
 class Trouble:
-    """The file as saved is wrong; the old graph keeps running. Empty: it is right again."""
+    """The file as saved is wrong; the old graph keeps running. Empty: it is right again.
+
+    ``title`` says what else is wrong: that the file is gone, or what was set on the page.
+    """
 
     version: int
     errors: tuple[Fault, ...]
+    title: str = ""
 
 
 @dataclass(frozen=True)
@@ -168,7 +176,8 @@ class Frame:
     pad : mapping
         A `picture` of the frame's image: rows, columns, pitch_cm (x, y), origin_cm (x, y),
         quantity, unit, low, high, ``values``: base64 of rows times columns bytes, row by row, 0 for
-        low up to 254 for high, 255 where there is no reading.
+        low up to 254 for high, 255 where there is no reading, ``readings``: base64 of what each
+        cell reads, float64, least byte first, NaN without a reading; null for a large pad.
     drawing : sequence of mapping
         What the outputs draw over the pad and, where it is known, the truth: each with ``shape``,
         ``role`` (found or true), ``node``, places in cm. ``circle``: x, y, radius; ``polygon``
@@ -242,6 +251,8 @@ class Pulse:
     frames, lost, shed : int
         Since the start: done; marked by the source as lost before them; left out here because the
         next were waiting.
+    shed_before : int
+        Left out here while the pipeline got ready (code was loaded, or compiled): in no ``shed``.
     latency_us : Quantiles
         From a frame's arrival to its result, of all frames of the last seconds.
     page_latency_us : Quantiles
@@ -252,6 +263,8 @@ class Pulse:
         starting (frames come, none is answered yet), running, waiting (nothing comes), ended.
     trouble : str
         Why nothing comes (stalled, unplugged, ended by an error), as long as that lasts.
+    counters : mapping
+        What the source assumed and counted, in words -> how often.
     """
 
     rate_hz: float
@@ -260,6 +273,7 @@ class Pulse:
     shed: int
     missed: int
     """Answers later than the deadline."""
+    shed_before: int
     viewers: int
     latency_us: Quantiles
     page_latency_us: Quantiles

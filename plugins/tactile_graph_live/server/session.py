@@ -122,8 +122,13 @@ class Session:
 
     @property
     def n_shed(self) -> int:
-        """Frames shed so far."""
+        """Frames shed so far, but for those of `n_shed_before`."""
         return self._vitals.summary.n_shed
+
+    @property
+    def n_shed_before(self) -> int:
+        """Frames shed while the pipeline got ready."""
+        return self._vitals.summary.n_shed_before
 
     # -- from beginning to end ---------------------------------------------------------------------
 
@@ -219,6 +224,7 @@ class Session:
             self._gaze.found(message)
         elif isinstance(message, wire.Tared):
             self._baseline, self._taring = message.baseline, False
+            self._gaze.again()
         elif isinstance(message, wire.Swapped):
             self._editor.swapped(message)
         elif isinstance(message, wire.Compared):
@@ -326,6 +332,8 @@ class Session:
     def _tare(self) -> None:
         self._taring = True
         self._send(wire.Tare(True))
+        if self._gaze.held:
+            self._tell("what is played is held: the tare is taken off the frames that come next")
 
     def _send(self, message: wire.ToBench) -> None:
         self._link.send(message)

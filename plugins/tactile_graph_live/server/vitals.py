@@ -41,6 +41,7 @@ class Vitals:
             n_lost=before.n_lost + summary.n_lost,
             n_shed=before.n_shed + summary.n_shed,
             n_missed=before.n_missed + summary.n_missed,
+            n_shed_before=before.n_shed_before + summary.n_shed_before,
         )
         self._latencies.append((now, summary.latencies_us))
         self._counts.append((now, summary.n_frames))
@@ -71,6 +72,7 @@ class Vitals:
             frames=its.n_frames,
             lost=its.n_lost,
             shed=its.n_shed,
+            shed_before=its.n_shed_before,
             missed=its.n_missed,
             viewers=viewers,
             latency_us=_quantiles(self._latencies),
@@ -82,7 +84,7 @@ class Vitals:
             kept_frames=its.kept_frames,
             state=its.state,
             trouble=visible(its.trouble),
-            counters=its.counters,
+            counters={visible(what): n for what, n in its.counters.items()},
             processes=_told(its.processes),
             beside=None if its.beside is None else without_nan(its.beside),
         )

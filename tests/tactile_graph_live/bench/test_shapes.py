@@ -9,7 +9,7 @@ import numpy as np
 
 from tactile_graph import Circle, Image, Mask, Points, Polygon
 from tactile_graph.draw.display import Area, Label, display_list
-from tactile_graph_live.bench.shapes import NO_READING, picture, shapes
+from tactile_graph_live.bench.shapes import MOST_EXACT, NO_READING, picture, readings, shapes
 
 
 def levels(told: dict[str, object]) -> list[int]:
@@ -28,6 +28,19 @@ def test_cells_without_a_reading_are_told_from_those_that_read_the_most() -> Non
     told = picture(Image(np.array([[1.0, 0.0]]), valid=valid))
     assert levels(told) == [254, NO_READING]
     assert levels(picture(Image(np.array([[np.nan, 1.0]])))) == [NO_READING, 254]
+
+
+def test_readings_go_to_their_last_digit_whatever_the_range_of_colours() -> None:
+    values = np.array([[0.0, -37.0, 0.0042], [1e9 + 1.0, np.nan, 5.0]])
+    told = readings(Image(values, valid=np.array([[True] * 3, [True, True, False]])))
+    assert told is not None
+    expected = np.array([0.0, -37.0, 0.0042, 1e9 + 1.0, np.nan, np.nan])
+    np.testing.assert_array_equal(np.frombuffer(b64decode(told), "<f8"), expected)
+
+
+def test_a_large_pad_goes_by_its_colours_alone() -> None:
+    assert readings(Image(np.zeros((1, MOST_EXACT)))) is not None
+    assert readings(Image(np.zeros((1, MOST_EXACT + 1)))) is None
 
 
 def test_what_lies_beyond_the_range_is_shown_as_its_end() -> None:

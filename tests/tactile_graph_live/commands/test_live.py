@@ -214,6 +214,20 @@ def test_a_recording_holds_every_frame_with_its_label(shared: Command, shared_fo
     assert frames[0].truth is not None
 
 
+def test_a_source_that_has_ended_is_not_started_over_into_a_recording(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--once", "--rate", "2000") as command, Page(command) as page:
+        page.until("pulse", state="ended")
+        page.ask("record", on=True, label="")
+        page.told("recording to")
+        page.ask("set", node="footprint", setting="level_v", value=0.5)
+        (fault,) = page.until("trouble")["errors"]
+        assert "end that, then change again" in fault["text"]
+        page.ask("record", on=False)
+        page.told("recorded no frame")
+        page.ask("set", node="footprint", setting="level_v", value=0.5)
+        page.until("frame", version=3)
+
+
 def test_a_recording_begins_with_its_key_press(command: Command) -> None:
     """To make the first store of a session takes longer than this recording lasts."""
     pytest.importorskip("zarr", reason="the zarr extra is not installed")
@@ -387,6 +401,31 @@ def test_tare_takes_off_what_lies_there(shared: Command) -> None:
         page.until("pulse", tared=True)
         page.ask("untare")
         page.until("pulse", tared=False)
+
+
+def test_what_is_held_is_shown_again_as_the_tare_has_it(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--rate", "200") as command, Page(command) as page:
+        page.until("frame")
+        page.ask("tare")
+        page.until("pulse", tared=True)
+        page.ask("pause")
+        page.until("pulse", paused=True)
+        page.ask("scrub", back_s=0.0)
+        tared = page.until("frame", latency_us=None)
+        page.ask("untare")
+        read = page.until("frame", index=tared["index"], latency_us=None)
+        assert read["pad"]["readings"] != tared["pad"]["readings"]
+
+
+def test_a_tare_while_what_is_played_is_held_says_what_it_waits_for(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--rate", "200") as command, Page(command) as page:
+        page.until("frame")
+        page.ask("pause")
+        page.until("pulse", paused=True)
+        page.ask("tare")
+        page.told("what is played is held")
+        page.ask("live")
+        page.told("tared by the median")
 
 
 def test_programs_take_every_result_in_order(shared: Command) -> None:

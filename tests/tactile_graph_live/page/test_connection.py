@@ -13,7 +13,7 @@ from helpers_live_page import Double, drawn, frame, free_port, graph, pulse, ser
 
 pytestmark = pytest.mark.slow  # a browser starts
 
-NETWORK = "WebSocket connection to"
+NETWORK = ("WebSocket connection to", "net::ERR_CONNECTION_REFUSED", "403 (Forbidden)")
 
 
 def test_it_says_that_the_server_is_gone_and_comes_back_with_it(window: Any) -> None:
@@ -42,7 +42,26 @@ def test_it_says_that_the_server_is_gone_and_comes_back_with_it(window: Any) -> 
         assert page.locator("#node-title").inner_text() == "circle"
         page.keyboard.press("t")
         second.heard("tare")
-    assert [c for c in opened.complaints() if NETWORK not in c] == []
+    assert [c for c in opened.complaints() if not any(n in c for n in NETWORK)] == []
+
+
+def test_a_server_with_another_token_is_told_from_one_that_is_gone(window: Any) -> None:
+    port = free_port()
+    opened = window(own=True)
+    page = opened.page
+    with served(Double(), port, "first") as first:
+        page.goto(first.address)
+        page.wait_for_selector("#result-rows tr")
+    page.wait_for_selector("#lost:visible")
+    told = page.locator("#lost-text")
+    with served(Double(), port, "second") as second:
+        wait_for(lambda: "The server refuses this page." in told.inner_text(), "it says why", 20)
+        assert "the token is missing or wrong; open the address that" in told.inner_text()
+        opened.context.new_page().goto(second.address)
+        page.locator("#lost").wait_for(state="hidden", timeout=20_000)
+    wait_for(lambda: "What you see" in told.inner_text(), "it is lost again", 20)
+    assert "refuses" not in told.inner_text()
+    assert [c for c in opened.complaints() if not any(n in c for n in NETWORK)] == []
 
 
 def test_trying_now_needs_no_wait(window: Any) -> None:

@@ -122,6 +122,7 @@ def test_what_is_no_number_is_not_sent(page: Any, double: Double) -> None:
     box.press("Enter")
     page.wait_for_timeout(200)
     assert not any(a["type"] == "set" for a in double.asked)
+    assert box.input_value() == "0.02"  # what runs
 
 
 def changed_graph() -> dict[str, Any]:
@@ -217,6 +218,17 @@ def test_numbers_stand_with_their_units(page: Any, double: Double) -> None:
     assert ["\t".join(r.split()) for r in rows][:4] == [
         "circle\tCircle", "x\t6\tcm", "y\t7\tcm", "radius\t2\tcm",
     ]  # fmt: skip
+
+
+def test_a_unit_that_is_the_pads_goes_with_its_frames(page: Any, double: Double) -> None:
+    peak = {"key": "peak", "name": "peak", "unit": "", "units": {"volt": "V", "kilopascal": "kPa"}}
+    row = {"output": "circle", "item": 1, "outcome": "ok", "type": "Load", "peak": 9.0}
+    double.say(graph(2, columns=[peak]))
+    rows = page.locator("#result-rows tr").nth(1)
+    for index, quantity, unit in ((1, "kilopascal", "kPa"), (2, "volt", "V")):
+        pad = frame(index)["pad"] | {"quantity": quantity, "unit": unit}
+        double.say(frame(index, rows=[row], pad=pad))
+        wait_for(lambda u=unit: rows.inner_text().split() == ["peak", "9", u], f"it is in {unit}")
 
 
 def test_several_things_have_a_table(page: Any, double: Double) -> None:

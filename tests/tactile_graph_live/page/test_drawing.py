@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 from typing import Any
@@ -10,7 +11,7 @@ import pytest
 
 pytest.importorskip("uvicorn", reason="the extra `live` is not there")
 
-from helpers_live_page import COLUMNS, ROWS, Double, drawn, frame, picture, pulse
+from helpers_live_page import COLUMNS, ROWS, Double, drawn, frame, picture, pulse, wait_for
 
 pytestmark = pytest.mark.slow  # a browser starts
 
@@ -87,7 +88,46 @@ def test_pointing_tells_the_cell(page: Any, double: Double) -> None:
     shown(page, double, pad=pad({(2, 3): 127}), drawing=[])
     x, y = place(page, 2, 3)
     page.locator("#pad-canvas").hover(position={"x": x, "y": y})
-    assert page.locator("#readout").inner_text() == "Row 2, column 3: 1.5 V, at 4.5, 3.3 cm"
+    assert page.locator("#readout").inner_text() == "Row 2, column 3: about 1.5 V, at 4.5, 3.3 cm"
+
+
+def test_a_cell_reads_what_it_reads_however_far_the_colours_reach(
+    page: Any, double: Double
+) -> None:
+    cells = [0.0] * (ROWS * COLUMNS)
+    cells[23], cells[24], cells[25], cells[26] = 100.0, 0.0042, math.nan, 2345.6
+    told = picture([*[1] * 25, 255, *[1] * (ROWS * COLUMNS - 26)], cells, low=-1137.0, high=1e6)
+    shown(page, double, pad=told, drawing=[])
+    read = []
+    for column in range(3, 8):
+        x, y = place(page, 2, column)
+        page.locator("#pad-canvas").hover(position={"x": x, "y": y})
+        read.append(page.locator("#readout").inner_text().split(": ")[1].split(", at")[0])
+    assert read == ["100 V", "0.0042 V", "no reading", "2346 V", "0 V"]
+    words = page.locator("#pad-canvas")
+    wait_for(lambda: "highest 2346 V" in words.get_attribute("aria-label"), "the highest is told")
+
+
+def test_without_readings_no_more_digits_are_told_than_colours_tell(
+    page: Any, double: Double
+) -> None:
+    told = picture([64] * (ROWS * COLUMNS), low=-1137.0, high=3400.0)  # 0 by a colour of 6.2
+    shown(page, double, pad=told, drawing=[])
+    x, y = place(page, 2, 3)
+    page.locator("#pad-canvas").hover(position={"x": x, "y": y})
+    assert "about 10 V" in page.locator("#readout").inner_text()
+
+
+def test_numbers_say_where_there_is_no_room_for_them(window: Any, double: Double) -> None:
+    page = window(viewport={"width": 390, "height": 800}).page
+    page.goto(double.address)
+    page.wait_for_selector("#result-rows tr")
+    page.get_by_label("numbers").check()
+    word = page.locator("#numbers-word")
+    for n, expected in ((16, "numbers"), (60, "numbers: no room")):
+        small = picture([0] * n * n, [100.0] * n * n, rows=n, columns=n)
+        shown(page, double, pad=small, drawing=[])
+        wait_for(lambda told=expected: word.inner_text() == told, expected)
 
 
 def test_a_wide_pad_fits(page: Any, double: Double) -> None:

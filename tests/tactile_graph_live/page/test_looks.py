@@ -107,6 +107,11 @@ def test_large_letters_still_fit(window: Any, double: Double) -> None:
     page.evaluate("document.documentElement.style.fontSize = '200%'")
     page.wait_for_timeout(100)
     assert page.evaluate("document.documentElement.scrollWidth") == 720
+    page.set_viewport_size({"width": 412, "height": 800})
+    assert page.evaluate("getComputedStyle(document.body).fontSize") == "30px"
+    clipped = page.evaluate("""() => [...document.querySelectorAll(".transport button, .stats > div")]
+        .filter((e) => e.scrollWidth > e.clientWidth).map((e) => e.textContent)""")
+    assert clipped == []
 
 
 def test_nothing_moves_where_that_is_not_wanted(window: Any, double: Double) -> None:

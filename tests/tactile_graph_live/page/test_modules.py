@@ -134,6 +134,8 @@ def test_ticks_are_round_and_within(call: Any) -> None:
     assert call("numbers", "ticks", 0, 20.8, 5) == [0, 5, 10, 15, 20]
     assert call("numbers", "ticks", 0, 3, 6) == [0, 0.5, 1, 1.5, 2, 2.5, 3]
     assert call("numbers", "ticks", 2, 2, 5) == [2]
+    assert call("numbers", "ticks", 0, 4095, 0.5) == [0, 2000, 4000]  # room for half of one
+    assert call("numbers", "ticks", -0.3, 0.9, 1) == [0, 0.5]
 
 
 HISTORY = """async ([seconds, values]) => {

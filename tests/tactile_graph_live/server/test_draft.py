@@ -160,6 +160,11 @@ def test_no_name_leads_out_of_the_folder(tmp_path: Path, name: str) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_name_that_is_too_long_is_told_so(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"'x{20}…': .* 100 at most, got 300"):
+        save(tmp_path, "x" * 300 + ".yaml", FLOW, "mine.yaml")
+
+
 READS = """\
 pipeline: mine
 source: {step: sample, with: {name: discs}}

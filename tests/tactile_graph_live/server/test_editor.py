@@ -130,6 +130,22 @@ def test_a_file_that_is_wrong_is_told_and_changes_nothing(desk: Desk) -> None:
     assert desk.editor.trouble is None
 
 
+def test_a_file_that_is_gone_and_a_setting_that_does_not_run_are_no_errors_of_the_file(
+    desk: Desk,
+) -> None:
+    desk.path.unlink()
+    desk.play(desk.editor.reload)
+    assert desk.troubles[-1].title == "The file is gone."
+    desk.save(FLOW)
+    desk.play(desk.editor.reload)
+    desk.answer = lambda swap: Swapped(swap.version, "takes 8 x 8 cells")
+    desk.play(lambda: desk.editor.set("footprint", "level_v", 0.02))
+    assert desk.troubles[-1].title == "What was set does not run."
+    desk.save(FLOW.replace("threshold", "treshold"))
+    desk.play(desk.editor.reload)
+    assert desk.troubles[-1].title == ""
+
+
 def test_a_file_that_is_wrong_stays_so_whatever_is_set_on_the_page(desk: Desk) -> None:
     desk.save(FLOW.replace("threshold", "treshold"))
     desk.play(desk.editor.reload)

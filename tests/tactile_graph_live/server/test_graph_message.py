@@ -75,6 +75,13 @@ def test_a_graph_is_boxes_wires_settings_and_columns() -> None:
     assert ("radius_cm", "radius", "cm") in [(c.key, c.name, c.unit) for c in graph.columns]
 
 
+def test_a_column_in_the_pads_unit_has_it_by_the_quantity_of_the_frames() -> None:
+    load = tg.loads("pipeline: p\nnodes: {load: {step: load, in: frame}}\noutputs: [load]")
+    units = {c.name: c.units for c in graph_message(load, 1, ("", ""), {}).columns}
+    assert units["peak"]["kilopascal"] == "kPa"
+    assert units["x"] == {}
+
+
 def test_settings_within_pipelines_that_are_used_are_there_under_their_full_names() -> None:
     pipeline = tg.loads("""
 pipeline: nested

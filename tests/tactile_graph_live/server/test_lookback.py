@@ -52,3 +52,5 @@ def test_the_baseline_is_taken_off_and_colours_keep_their_range() -> None:
     tared = look.frame(kept(1, baseline=True), (), {"low": -1.0, "high": 8.0})
     assert (tared.pad["low"], tared.pad["high"]) == (-1.0, 8.0)
     assert tared.rows[0]["count"] == 0
+    again = look.frame(kept(1), (), None)  # the tare is taken back
+    assert (again.pad["low"], again.pad["high"]) == (0.0, 2.0)

@@ -33,7 +33,10 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 def summary(n_frames: int, latencies: list[float], state: str = "running") -> Summary:
     times = np.array(latencies, np.float32)
-    return Summary(times, n_frames, 2, 3, 1, 12.345, 67, state, True, {"bytes": 9})  # type: ignore[arg-type]
+    counters = {"bytes": 9}
+    return Summary(
+        times, n_frames, 2, 3, 1, 12.345, 67, state, True, counters, n_shed_before=5  # type: ignore[arg-type]
+    )  # fmt: skip
 
 
 def test_the_rate_is_that_of_the_last_second(clock: Clock) -> None:
@@ -58,6 +61,7 @@ def test_counts_go_on_where_a_bench_died(clock: Clock) -> None:
     vitals.add(summary(50, []))
     pulse = vitals.pulse(0, Recording(), paused=False)
     assert (pulse.frames, pulse.lost, pulse.shed, pulse.missed) == (150, 4, 6, 2)
+    assert pulse.shed_before == 10
     assert pulse.rate_hz == 200.0
 
 
