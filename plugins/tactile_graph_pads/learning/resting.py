@@ -252,8 +252,8 @@ def _side_by_side(on: Flags, read: Flags) -> bool:
     """Return whether elements are neighbours oftener than by chance."""
     pairs = both = 0
     for one, other in ((np.s_[:, 1:], np.s_[:, :-1]), (np.s_[1:], np.s_[:-1])):
-        pairs += np.count_nonzero(read[one] & read[other])
-        both += np.count_nonzero(on[one] & on[other])
+        pairs += int(np.count_nonzero(read[one] & read[other]))
+        both += int(np.count_nonzero(on[one] & on[other]))
     expected = pairs * (on.sum() / read.sum()) ** 2
     return bool(both > expected + BY_CHANCE * np.sqrt(expected))
 
