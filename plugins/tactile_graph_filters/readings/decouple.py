@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -16,9 +15,6 @@ from tactile_graph_filters.nan import finite, refuse_nan
 
 if TYPE_CHECKING:
     from tactile_graph_pads.circuits import Inverse
-
-MOST_NOISES = 2.0
-"""Root mean square misfit, in the noise a pad states, up to which voltages are its circuit's."""
 
 
 class Decouple:
@@ -56,9 +52,8 @@ class Decouple:
         from tactile_graph_pads.pad import load_pad
 
         its = load_pad(pad)
-        self._circuit, self._max_residual = its.circuit, max_residual
-        step_v = 0.0 if its.converter.bits is None else its.converter.step_v
-        self._noise_v = math.hypot(its.scan.noise_v / math.sqrt(its.scan.samples), step_v / 12**0.5)
+        self._circuit, self._noise_v = its.circuit, its.noise_v
+        self._max_residual = max_residual
 
     def __call__(
         self, image: Annotated[Image, Quantity("volt")]
@@ -96,6 +91,8 @@ class Decouple:
         Degenerate
             If they are farther off than that.
         """
+        from tactile_graph_pads.circuits.nearest import MOST_NOISES
+
         said = (
             f"the inverse of the {self._circuit.kind} circuit stopped after"
             f" {missed.iterations} steps at a misfit of {missed.residual:.2g},"

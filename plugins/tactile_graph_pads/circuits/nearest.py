@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-MOST_ITERATIONS = 60
+MOST_ITERATIONS = 20
 MOST_TRIALS = 8
 """Of one step, each with ten times the damping of the one before."""
 FIRST_DAMPING, LEAST_DAMPING = 1e-3, 1e-9
+MOST_NOISES = 2.0
+"""Root mean square misfit, in the noise a pad states, up to which voltages are its circuit's."""
 LITTLE = 1e-4
 """Part of the sum of squares: who gains less by a step has arrived."""
 

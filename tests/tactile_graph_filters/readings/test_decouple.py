@@ -94,6 +94,7 @@ def test_an_element_that_was_not_read_does_not_keep_the_others_from_being_found(
     assert np.abs(image.values - siemens).sum() < 0.05 * siemens.sum()
 
 
+@pytest.mark.slow
 def test_voltages_of_another_circuit_are_told_from_noise():
     volts = measured(Divider(), disc_siemens(5), 5)
     with pytest.raises(
