@@ -24,6 +24,10 @@ REACH = 3.0
 THINNER = 0.3
 """Readings up to twice as far, over those of the noise, from which on the noise is not all."""
 
+FARTHEST, HALF_WITHIN = 4.0, 0.6745
+"""Standard deviations beyond which a reading is none of the noise, though no gap lies below it, and
+within which half of the noise lies: of as many readings above rest as are cut off below."""
+
 ENOUGH = 0.7
 """Of the readings that normal noise has above rest, the share that must be there: rounding makes
 the noise seem up to a third larger."""
@@ -81,6 +85,11 @@ def _noise_plain(values: Values, known: Cells, sample: Values, rest: float, step
             continue
         if step > LARGEST_STEP and above[0] == above[-1]:
             return 0.0
+        half = min(at_rest // 2, k)
+        if above[k] > FARTHEST * float(above[half]) / HALF_WITHIN:
+            sigma = float(above[half]) / HALF_WITHIN
+            k = int(above.searchsorted(FARTHEST * sigma, "right")) - 1
+            n_above, n_free = k + 1, at_rest + k + 1
         if is_as_many(n_above, n_free, sigma, step):
             hum = FEW_STEPS * step if above[0] < above[-1] else 0.0
             return sigma if _is_anywhere_plain(values, known, rest, float(above[k]), hum) else 0.0
@@ -113,6 +122,12 @@ def clipped_noise(values, known, sample, rest, step):  # type: ignore[no-untyped
             continue
         if step > LARGEST_STEP and sample[start] == sample[n - 1]:
             return 0.0
+        half = sample[min(start + (start - below) // 2, k)] - rest
+        if above > FARTHEST * half / HALF_WITHIN:
+            sigma = half / HALF_WITHIN
+            while sample[k] - rest > FARTHEST * sigma:
+                k -= 1
+            above, n_above, n_free = sample[k] - rest, k + 1 - start, k + 1 - below
         if is_as_many(n_above, n_free, sigma, step):
             hum = FEW_STEPS * step if sample[start] < sample[n - 1] else 0.0
             return sigma if is_anywhere(values, known, rest, above, hum) else 0.0

@@ -70,6 +70,16 @@ def test_loads_on_a_pad_that_truly_reads_nothing_all_stand_out_of_noise(
         assert 4.0 * noise_of(values) < values[values > 0.0].min()
 
 
+@pytest.mark.parametrize("radius", [5.0, 5.5, 6.0])
+def test_loads_that_no_gap_parts_from_cut_off_noise_are_none_of_it(radius: float) -> None:
+    rng = np.random.default_rng(12)
+    loads = disc(radius) * rng.uniform(0.0, 500.0, (20, 16, 16))
+    values = np.maximum(np.round(rng.normal(loads, 20.0)), 0.0)
+    found = np.array([noise_of(frame) for frame in values])
+    assert np.median(found) == pytest.approx(20.0, rel=0.2)
+    assert found.max() < 40.0
+
+
 def with_hum(rng: np.random.Generator, steps: float, load: np.ndarray | float) -> np.ndarray:
     """Return counts over rows of 50 Hz hum, each read 3.1 ms after the other."""
     hum = steps * np.sin(2.0 * np.pi * (0.155 * np.arange(16)[:, None] + rng.random()))
@@ -157,6 +167,8 @@ def test_hum_is_told_alike_in_loops(seed: int) -> None:
     rng = np.random.default_rng(seed)
     values = with_hum(rng, rng.uniform(0.0, 3.0), 300.0 * disc(rng.uniform(0.0, 5.0)))
     known = rng.random((16, 16)) < 0.9
+    offsets = np.maximum(np.round(rng.normal(0.0, 20.0, (16, 16)) + rng.integers(500) * disc(4)), 0)
     for cells in (EVERY, known):
-        args = given(values, cells)
-        assert plainly(clipped_noise)(*args) == clipped_noise.reference(*args)
+        for readings in (values, offsets):
+            args = given(readings, cells)
+            assert plainly(clipped_noise)(*args) == clipped_noise.reference(*args)
