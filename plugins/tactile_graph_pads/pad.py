@@ -6,6 +6,7 @@ share `Pad.forward`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -174,6 +175,14 @@ class Pad:
         if self.defects.preload_g > 0.0:
             load = np.maximum(load - self._nominal.preload_g, 0.0)
         return Loads(load, valid, found.residual)
+
+    @property
+    def noise_v(self) -> float:
+        """Standard deviation of a frame's voltage, by noise and the converter's rounding."""
+        step_v = 0.0 if self.converter.bits is None else self.converter.step_v
+        return math.hypot(
+            self.scan.noise_v / math.sqrt(self.scan.samples), step_v / math.sqrt(12.0)
+        )
 
     @cached_property
     def _nominal(self) -> Built:

@@ -24,6 +24,10 @@ REACH = 3.0
 THINNER = 0.3
 """Readings up to twice as far, over those of the noise, from which on the noise is not all."""
 
+FARTHEST, HALF_WITHIN = 4.0, 0.6745
+"""Standard deviations beyond which a reading is none of the noise, though no gap lies below it, and
+within which half of the noise lies: of as many readings above rest as are cut off below."""
+
 ENOUGH = 0.7
 """Of the readings that normal noise has above rest, the share that must be there: rounding makes
 the noise seem up to a third larger."""
@@ -33,6 +37,13 @@ LARGEST_STEP = 1.0
 
 ALIKE, APART = 1.05, 2.5
 """Times, and standard deviations beyond that, what neighbours share by chance."""
+
+FEW_STEPS = 8.0
+"""Of a converter, up to which what is alike along rows or columns may be hum; a frame of two
+values is a mat of switches, which has none."""
+
+FEWEST_RUNS = 2
+"""Of noisy rows or columns, with quiet ones between: hum has them, a load does not."""
 
 
 def _noise_plain(values: Values, known: Cells, sample: Values, rest: float, step: float) -> float:
@@ -74,8 +85,14 @@ def _noise_plain(values: Values, known: Cells, sample: Values, rest: float, step
             continue
         if step > LARGEST_STEP and above[0] == above[-1]:
             return 0.0
+        half = min(at_rest // 2, k)
+        if above[k] > FARTHEST * float(above[half]) / HALF_WITHIN:
+            sigma = float(above[half]) / HALF_WITHIN
+            k = int(above.searchsorted(FARTHEST * sigma, "right")) - 1
+            n_above, n_free = k + 1, at_rest + k + 1
         if is_as_many(n_above, n_free, sigma, step):
-            return sigma if _is_anywhere_plain(values, known, rest, float(above[k])) else 0.0
+            hum = FEW_STEPS * step if above[0] < above[-1] else 0.0
+            return sigma if _is_anywhere_plain(values, known, rest, float(above[k]), hum) else 0.0
     return 0.0
 
 
@@ -105,8 +122,15 @@ def clipped_noise(values, known, sample, rest, step):  # type: ignore[no-untyped
             continue
         if step > LARGEST_STEP and sample[start] == sample[n - 1]:
             return 0.0
+        half = sample[min(start + (start - below) // 2, k)] - rest
+        if above > FARTHEST * half / HALF_WITHIN:
+            sigma = half / HALF_WITHIN
+            while sample[k] - rest > FARTHEST * sigma:
+                k -= 1
+            above, n_above, n_free = sample[k] - rest, k + 1 - start, k + 1 - below
         if is_as_many(n_above, n_free, sigma, step):
-            return sigma if is_anywhere(values, known, rest, above) else 0.0
+            hum = FEW_STEPS * step if sample[start] < sample[n - 1] else 0.0
+            return sigma if is_anywhere(values, known, rest, above, hum) else 0.0
     return 0.0
 
 
@@ -120,13 +144,15 @@ def is_as_many(n_above: int, n_free: int, sigma: float, step: float) -> bool:
     return n_above >= ENOUGH * expected
 
 
-def _is_anywhere_plain(values: Values, known: Cells, rest: float, reach: float) -> bool:
+def _is_anywhere_plain(values: Values, known: Cells, rest: float, reach: float, hum: float) -> bool:
     """Return whether cells up to ``reach`` above rest are neighbours no oftener than by chance.
 
     Notes
     -----
     Pairs of neighbours, also across corners, are counted among cells at rest and those above (P.
-    A. P. Moran 1948, The interpretation of statistical maps).
+    A. P. Moran 1948, The interpretation of statistical maps). Up to ``hum``, chance is also what
+    each row or each column has: hum shifts whole ones by a few steps. Noisy ones then alternate
+    with quiet ones, as under no single load.
     """
     free = (values >= rest) & (values <= rest + reach)
     if known.size:
@@ -141,11 +167,17 @@ def _is_anywhere_plain(values: Values, known: Cells, rest: float, reach: float) 
     ):
         pairs += int(np.count_nonzero(free[one] & free[other]))
         both += int(np.count_nonzero(noisy[one] & noisy[other]))
-    return are_few(both, pairs, int(np.count_nonzero(noisy)), int(np.count_nonzero(free)))
+    share = int(np.count_nonzero(noisy)) / max(int(np.count_nonzero(free)), 1)
+    if are_few(both, pairs * share**2):
+        return True
+    if reach > hum:
+        return False
+    state = free.astype(np.uint8) + noisy
+    return _is_by_line_plain(state, both, share) or _is_by_line_plain(state.T, both, share)
 
 
 @compiled_twin_of(_is_anywhere_plain)
-def is_anywhere(values, known, rest, reach):  # type: ignore[no-untyped-def]
+def is_anywhere(values, known, rest, reach, hum):  # type: ignore[no-untyped-def]
     """Do the same in loops."""
     (rows, columns), every, top = values.shape, known.size == 0, rest + reach
     state = np.zeros((rows, columns), np.uint8)
@@ -165,12 +197,77 @@ def is_anywhere(values, known, rest, reach):  # type: ignore[no-untyped-def]
                 if k < rows and 0 <= m < columns and state[k, m] > 0:
                     pairs += 1
                     both += state[i, j] == 2 and state[k, m] == 2
-    return are_few(both, pairs, n_noisy, n_free)
+    share = n_noisy / max(n_free, 1)
+    if are_few(both, pairs * share**2):
+        return True
+    if reach > hum:
+        return False
+    turned = np.ascontiguousarray(state.T)
+    return is_by_line(state, both, share) or is_by_line(turned, both, share)
+
+
+def _is_by_line_plain(state: NDArray[np.uint8], both: int, share: float) -> bool:
+    """Return whether cells above rest are neighbours as often as each row's share of them says.
+
+    Parameters
+    ----------
+    state : ndarray of uint8, shape (rows, columns)
+        2 above rest, 1 at rest, 0 of others.
+    both : int
+        Neighbours that are above.
+    share : float
+        Of cells that are above, over all rows.
+    """
+    free = state > 0
+    n_free, n_noisy = free.sum(axis=1), (state == 2).sum(axis=1)
+    shares = n_noisy / np.maximum(n_free, 1)
+    loud, runs = False, 0
+    for its in shares[n_free > 0].tolist():
+        if loud != (its > (0.5 * share if loud else share)):
+            loud = not loud
+            runs += loud
+    if runs < FEWEST_RUNS:
+        return False
+    along = (free[:, 1:] & free[:, :-1]).sum(axis=1)
+    across = np.zeros(len(free), np.int64)
+    across[:-1] = (free[1:] & free[:-1]).sum(axis=1)
+    across[:-1] += (free[1:, 1:] & free[:-1, :-1]).sum(axis=1)
+    across[:-1] += (free[1:, :-1] & free[:-1, 1:]).sum(axis=1)
+    terms = shares * (along * shares + across * np.append(shares[1:], 0.0))
+    return are_few(both, float(np.add.accumulate(terms)[-1]))
+
+
+@compiled_twin_of(_is_by_line_plain)
+def is_by_line(state, both, share):  # type: ignore[no-untyped-def]
+    """Do the same in loops."""
+    rows, columns = state.shape
+    shares, loud, runs = np.zeros(rows + 1), False, 0
+    for i in range(rows):
+        n_free = n_noisy = 0
+        for j in range(columns):
+            n_free += state[i, j] > 0
+            n_noisy += state[i, j] == 2
+        shares[i] = n_noisy / max(n_free, 1)
+        if n_free > 0 and loud != (shares[i] > (0.5 * share if loud else share)):
+            loud = not loud
+            runs += loud
+    if runs < FEWEST_RUNS:
+        return False
+    expected = 0.0
+    for i in range(rows):
+        along = across = 0
+        for j in range(columns):
+            if state[i, j] == 0:
+                continue
+            along += j + 1 < columns and state[i, j + 1] > 0
+            for m in range(max(0, j - 1), min(columns, j + 2)):
+                across += i + 1 < rows and state[i + 1, m] > 0
+        expected += shares[i] * (along * shares[i] + across * shares[i + 1])
+    return are_few(both, expected)
 
 
 @compiled_later
-def are_few(both: int, pairs: int, n_noisy: int, n_free: int) -> bool:
-    """Return whether ``both`` of so many pairs are noisy no oftener than by chance."""
-    expected = pairs * (n_noisy / max(n_free, 1)) ** 2
+def are_few(both: int, expected: float) -> bool:
+    """Return whether ``both`` are noisy no oftener than by chance."""
     by_chance = APART * math.sqrt(expected)
     return expected / ALIKE - by_chance <= both <= ALIKE * expected + by_chance

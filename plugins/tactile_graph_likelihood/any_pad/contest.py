@@ -87,14 +87,14 @@ def _first_look(
     """
     kinds = {any_pad.told.kind: name for name, any_pad in every.items()}
     first = kinds.get(DISC if _is_round(readings) else RECTANGLE, next(iter(every)))
-    its, lead = every[first].begun(readings)
-    lead = its.sought(readings, lead)
+    begun, lead = every[first].begun(readings)
+    lead = begun.sought(readings, lead)
     if lead.mode.height == -math.inf:
         return readings, every, {}
-    begun = its is not every[first]
-    if strays := its.told.noise.strays if begun else its.strays(readings, lead):
+    knows = begun is not every[first]
+    if strays := begun.told.noise.strays if knows else begun.strays(readings, lead):
         every = {name: any_pad.knowing(strays) for name, any_pad in every.items()}
-        lead = lead if begun else every[first].again(readings, lead)
+        lead = lead if knows else every[first].again(readings, lead)
     readings, lead = every[first].cleared(readings, lead)
     found, is_disc = {first: lead}, every[first].told.kind == DISC and lead.fit.surprise > POOR
     for name, any_pad in every.items():

@@ -24,6 +24,8 @@ from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import OFF, ON, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Gap, Readings, TurnOn, grid_of
+from tactile_graph_pads.circuits import Inverse
+from tactile_graph_pads.circuits.nearest import MOST_NOISES
 from tactile_graph_pads.pad import Pad
 
 SAME = 0.02
@@ -63,7 +65,8 @@ def observed(
     ----------
     image : Image
         Volts are freed of the pad's circuit, unless most of them cannot be its, and conductances
-        turned into loads by its law; any other quantity is taken to rise with load from the
+        turned into loads by its law: of a floating circuit, whose inverse noise upsets, those
+        within the noise that the pad states. Any other quantity is taken to rise with load from the
         frame's own zero. Invalid cells say nothing, nor do those that are dead far below the
         others (`dead_below`).
     pad : Pad
@@ -102,7 +105,7 @@ def observed(
     above, least, shows, _, its = risen(image, pad)
     if not above.size:
         raise Degenerate("the image has no element: no outline fits")
-    loads, least_loads, known = _loads(image.quantity, above, least, pad)
+    loads, least_loads, known, shows = _loads(image, above, least, shows, pad)
     if image.valid is not None:
         known = _both(known, image.valid)
     if its is not None:
@@ -166,20 +169,20 @@ def _turn_on(pad: Pad, hidden_g: float) -> TurnOn:
 
 
 def _loads(
-    quantity: str, above: Values, least: float | Values, pad: Pad
-) -> tuple[Values, Values, NDArray[np.bool_]]:
+    image: Image, above: Values, least: float | Values, shows: NDArray[np.bool_], pad: Pad
+) -> tuple[Values, Values, NDArray[np.bool_], NDArray[np.bool_]]:
     """Return loads, the load that each element would have shown as ``least``, and what is possible.
 
     The second has one row where columns are alike. What has no law is its own load; so are volts
-    that are not the circuit's.
+    that are not the circuit's. Last comes what ``shows`` that is no ghost.
     """
     least_each = np.array([[least]]) if isinstance(least, float) else least
-    if quantity == "siemens":
+    if image.quantity == "siemens":
         loads = pad.law.load_of(above)
         possible = np.isfinite(loads)
         possible.setflags(write=False)
-        return loads, pad.law.load_of(least_each), possible
-    if quantity == "volt":
+        return loads, pad.law.load_of(least_each), possible, shows
+    if image.quantity == "volt":
         found = pad.circuit.inverse(above / pad.circuit.supply_v)
         if found.residual <= MISFIT:
             believed, loads, least_loads, possible = loads_behind.call(
@@ -187,8 +190,32 @@ def _loads(
             )
             if believed:
                 possible.setflags(write=False)
-                return loads, least_loads, possible
-    return above, least_each, EVERY
+                return loads, least_loads, possible, shows
+        elif (behind := _behind_noise(above, least_each, found, image.valid, pad)) is not None:
+            siemens, least_s = behind
+            loads = pad.law.load_of(siemens)
+            possible = np.isfinite(loads)
+            possible.setflags(write=False)
+            return loads, pad.law.load_of(least_s), possible, shows & (siemens > least_s)
+    return above, least_each, EVERY, shows
+
+
+def _behind_noise(
+    above: Values, least: Values, missed: Inverse, valid: NDArray[np.bool_] | None, pad: Pad
+) -> tuple[Values, Values] | None:
+    """Return the conductances nearest to a floating circuit's volts, None if not within noise.
+
+    The second are those of elements each of which measures as ``least`` alone on the pad.
+    """
+    circuit, noise_v = pad.circuit, pad.noise_v
+    if circuit.kind != "floating" or noise_v == 0.0 or not math.isfinite(missed.residual):
+        return None
+    seen = np.ones(above.shape, np.bool_) if valid is None else valid
+    found, off = circuit.nearest(above / circuit.supply_v, noise_v / circuit.supply_v, seen)
+    if off > MOST_NOISES:
+        return None
+    ratio = least / circuit.supply_v
+    return found.siemens, ratio / (circuit.bias_ohm - circuit.series_ohm * ratio)
 
 
 def uniform(readings: Readings) -> Readings:

@@ -84,7 +84,7 @@ def _on_rim(model: Model, readings: Readings, its: Likeliest) -> float:
     """Return on about how many elements an outline's rim lies."""
     pitch, side = readings.grid[2:4].tolist()
     a, b = (its.mode.p[2:4] if model.kind != DISC else its.mode.p[[2, 2]]).tolist()
-    return 4.0 * (a + b) * side / (pitch * pitch)
+    return float(4.0 * (a + b) * side / (pitch * pitch))
 
 
 def _strangeness(model: Model, readings: Readings, its: Likeliest, noise: float) -> float:

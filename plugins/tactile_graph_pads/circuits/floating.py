@@ -15,12 +15,16 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_twin_of
 from tactile_graph_pads.circuits.inverse import Inverse
+from tactile_graph_pads.circuits.nearest import nearest_above
 from tactile_graph_pads.circuits.newton import solve_log
 
 Array = NDArray[np.float64]
 
 NEGLIGIBLE = 1e-100
 """Conductance over the frame's largest below which an element conducts nothing."""
+
+NONE_BY_NOISE = 1e-9
+"""The same where noise hides more than that."""
 
 
 @np.errstate(over="ignore")  # a conductance near 0 has a resistance that is infinite
@@ -109,7 +113,12 @@ def equivalent_s(siemens: Array) -> Array:  # noqa: D103
 
 
 def _log_jacobian(siemens: Array, on: NDArray[np.bool_], equivalent: Array) -> Array:
-    """Return d ln G_eq / d ln g over the conducting elements, shape (n, n).
+    """Return d ln G_eq / d ln g over the conducting elements, shape (n, n)."""
+    return np.asarray(_slopes(siemens, on) * siemens[on] * equivalent[on][:, None])
+
+
+def _slopes(siemens: Array, on: NDArray[np.bool_]) -> Array:
+    """Return how equivalent resistances fall with conductances, shape (n, n).
 
     ``dR_e / dg_f = -(E^T L+ E)_ef^2`` with L+ the pseudoinverse of the network's Laplacian.
     """
@@ -123,7 +132,7 @@ def _log_jacobian(siemens: Array, on: NDArray[np.bool_], equivalent: Array) -> A
     j = j + rows
     drop = plus[:, i] - plus[:, j]
     transfer = drop[i] - drop[j]
-    return np.asarray(transfer**2 * siemens[on] * equivalent[on][:, None])
+    return np.asarray(transfer**2)
 
 
 @dataclass(frozen=True)
@@ -209,3 +218,58 @@ class Floating:
         found = solve_log(np.log(target[on]), log_model, jacobian, first)
         siemens[on] = np.exp(found.log_siemens) * unit
         return Inverse(siemens, valid, found.residual, found.iterations)
+
+    def nearest(self, ratio: Array, noise: float, seen: NDArray[np.bool_]) -> tuple[Inverse, float]:
+        """Return the conductances that come nearest to noisy data, and their misfit over the noise.
+
+        Parameters
+        ----------
+        ratio : ndarray of float64, shape (rows, columns)
+            Measured volts over supply volts, less than a short circuit gives.
+        noise : float
+            Standard deviation of ``ratio``, above 0.
+        seen : ndarray of bool, shape (rows, columns)
+            Elements whose data count.
+
+        Returns
+        -------
+        Inverse
+            Nowhere negative; its residual is the largest misfit over the largest datum.
+        float
+            Root mean square of the misfits, in ``noise``. 1 or less is found.
+
+        Notes
+        -----
+        Noise makes data that no network gives, and `inverse` follows it into logarithms of
+        nothing. Conductances, unlike these, end at 0.
+        """
+        positive = np.where(seen, np.maximum(ratio, 0.0), 0.0)
+        target = positive / (self.bias_ohm - self.series_ohm * positive)
+        unit = float(target.max(initial=0.0))
+        if not unit > 0.0:
+            return Inverse(np.zeros(ratio.shape), np.ones(ratio.shape, np.bool_)), 0.0
+        target /= unit
+        every, bias, series = (
+            np.ones(ratio.shape, np.bool_),
+            self.bias_ohm * unit,
+            self.series_ohm * unit,
+        )
+        weight = np.where(seen, 1.0 / noise, 0.0)
+
+        def misfit(flat: Array) -> Array:
+            through = equivalent_s(flat.reshape(ratio.shape))
+            return np.ravel((ratio - bias * through / (1.0 + series * through)) * weight)
+
+        def jacobian(flat: Array) -> Array:
+            siemens = flat.reshape(ratio.shape)
+            through = equivalent_s(siemens)
+            by_ohm = bias * (through / (1.0 + series * through)) ** 2 * weight
+            return np.asarray(np.ravel(by_ohm)[:, None] * _slopes(siemens, every))
+
+        start = target * (target / np.where(target > 0.0, equivalent_s(target), 1.0))
+        found = nearest_above(misfit, jacobian, np.ravel(start), NONE_BY_NOISE)
+        flat = np.where(found.found > NONE_BY_NOISE, found.found * unit, 0.0)
+        worst = float(np.abs(misfit(found.found)).max()) * noise / float(positive.max())
+        n_seen = max(int(np.count_nonzero(seen)), 1)
+        off = float(np.sqrt(found.mean_square * ratio.size / n_seen))
+        return Inverse(flat.reshape(ratio.shape), every, worst, found.iterations), off

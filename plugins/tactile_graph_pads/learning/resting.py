@@ -19,6 +19,10 @@ STANDS_OUT = 8.0
 """Spreads of the others by which an element's offset is unlike theirs."""
 LEAST_OBJECT = 4
 """Neighbouring elements that stand out together: then something lies on them."""
+MANY = 0.2
+"""Share of elements above the others from which on that may be how offsets scatter."""
+BY_CHANCE = 2.5
+"""Standard deviations by which more neighbours than by chance are alike: then by an object."""
 MOST_TOUCHED = 0.1
 """Share of an empty recording's frames that may be left out as touched."""
 
@@ -183,7 +187,9 @@ def _touched_frames(values: Array) -> Flags:
     middle = np.median(values, axis=0)
     above = values - middle
     noise = MAD_TO_SIGMA * np.median(np.abs(above), axis=0)
-    usual = max(float(np.median(noise)), step_of(values) / np.sqrt(12.0))
+    # Noise that a device cuts off at 0 is not in the median deviation, but in what rises.
+    rise = float(np.median(np.quantile(above, 0.84, axis=0)))
+    usual = max(float(np.median(noise)), rise, step_of(values) / np.sqrt(12.0))
     if usual == 0.0:
         usual = 1e-6 * max(float(np.abs(middle).max()), 1e-300)
     high = above > STANDS_OUT * np.maximum(noise, usual)
@@ -209,14 +215,47 @@ def _odd(offset: Array, noise: Array, missing: Flags, step: float) -> tuple[Flag
     """Return which elements read far from the others, never change, and scatter far more."""
     read = ~missing
     middle = float(np.median(offset[read]))
-    spread = MAD_TO_SIGMA * float(np.median(np.abs(offset[read] - middle)))
     usual = float(np.median(noise[read]))
-    far = STANDS_OUT * max(spread, 2.0 * usual, step, 1e-9 * abs(middle))
+    least = max(2.0 * usual, step, 1e-9 * abs(middle))
+    far = STANDS_OUT * max(_spread(offset - middle, read, least), least)
     stuck = read & (np.abs(offset - middle) > far)
     floor = max(usual, step / np.sqrt(12.0))
     noisy = read & ~stuck & (noise > 4.0 * floor) if floor > 0.0 else np.zeros_like(read)
     still = read & ~stuck & (noise <= 1e-9 * usual) & (usual > step)
     return stuck, still, noisy
+
+
+def _spread(apart: Array, read: Flags, least: float) -> float:
+    """Return how far offsets scatter around their middle, also where a device cuts them off at it.
+
+    Parameters
+    ----------
+    apart : ndarray, shape (rows, columns)
+        Offsets less their middle.
+    read : ndarray of bool, shape (rows, columns)
+    least : float
+        What is more is above the middle.
+
+    Notes
+    -----
+    Half of the offsets read 0 then, and their median deviation is none. Those above tell the
+    spread, where they are many and lie anywhere: under an object they lie side by side.
+    """
+    spread = MAD_TO_SIGMA * float(np.median(np.abs(apart[read])))
+    above = read & (apart > least)
+    if above.sum() < MANY * read.sum() or _side_by_side(above, read):
+        return spread
+    return max(spread, MAD_TO_SIGMA * float(np.median(apart[above])))
+
+
+def _side_by_side(on: Flags, read: Flags) -> bool:
+    """Return whether elements are neighbours oftener than by chance."""
+    pairs = both = 0
+    for one, other in ((np.s_[:, 1:], np.s_[:, :-1]), (np.s_[1:], np.s_[:-1])):
+        pairs += int(np.count_nonzero(read[one] & read[other]))
+        both += int(np.count_nonzero(on[one] & on[other]))
+    expected = pairs * (on.sum() / read.sum()) ** 2
+    return bool(both > expected + BY_CHANCE * np.sqrt(expected))
 
 
 def _refuse_touched(touched: Flags, where: str) -> None:

@@ -70,6 +70,51 @@ def test_loads_on_a_pad_that_truly_reads_nothing_all_stand_out_of_noise(
         assert 4.0 * noise_of(values) < values[values > 0.0].min()
 
 
+@pytest.mark.parametrize("radius", [5.0, 5.5, 6.0])
+def test_loads_that_no_gap_parts_from_cut_off_noise_are_none_of_it(radius: float) -> None:
+    rng = np.random.default_rng(12)
+    loads = disc(radius) * rng.uniform(0.0, 500.0, (20, 16, 16))
+    values = np.maximum(np.round(rng.normal(loads, 20.0)), 0.0)
+    found = np.array([noise_of(frame) for frame in values])
+    assert np.median(found) == pytest.approx(20.0, rel=0.2)
+    assert found.max() < 40.0
+
+
+def with_hum(rng: np.random.Generator, steps: float, load: np.ndarray | float) -> np.ndarray:
+    """Return counts over rows of 50 Hz hum, each read 3.1 ms after the other."""
+    hum = steps * np.sin(2.0 * np.pi * (0.155 * np.arange(16)[:, None] + rng.random()))
+    return np.maximum(np.round(rng.normal(hum, 0.4, (16, 16)) + load), 0.0)
+
+
+@pytest.mark.parametrize("steps", [0.4, 0.8, 1.6, 2.5])
+@pytest.mark.parametrize("radius", [1.5, 2.5, 4.5])
+@pytest.mark.parametrize("by_columns", [False, True])
+def test_hum_that_is_alike_along_rows_or_columns_is_noise(
+    steps: float, radius: float, by_columns: bool
+) -> None:
+    rng = np.random.default_rng(10)
+    load = 300.0 * disc(radius)
+    frames = [with_hum(rng, steps, load) for _ in range(20)]
+    found = np.array([noise_of(f.T.copy() if by_columns else f) for f in frames])
+    assert np.count_nonzero(found == 0.0) <= 1
+    assert np.median(found) == pytest.approx(np.hypot(0.4, steps / np.sqrt(2.0)), rel=0.35)
+
+
+@pytest.mark.parametrize("steps", [2.0, 4.0, 8.0])
+def test_a_rod_from_edge_to_edge_is_no_hum(steps: float) -> None:
+    rng = np.random.default_rng(11)
+    for rows in (slice(2, 6), slice(4, 11), slice(0, 5)):
+        rod = np.zeros((16, 16))
+        rod[rows] = np.ceil(steps * rng.uniform(0.6, 1.0, rod[rows].shape))
+        assert noise_of(rod) == noise_of(rod.T.copy()) == 0.0
+
+
+def test_two_rods_on_a_mat_of_switches_are_no_hum() -> None:
+    mat = np.zeros((16, 16))
+    mat[2:6] = mat[10:14] = 1.0
+    assert noise_of(mat) == 0.0
+
+
 def test_too_few_readings_tell_nothing() -> None:
     values = counts(np.random.default_rng(5), 1.0)
     assert noise_of(values[:6, :9]) == 0.0
@@ -113,5 +158,17 @@ def test_noise_is_told_alike_in_loops(shape: tuple[int, int]) -> None:
         for cells in (EVERY, known):
             args = given(values, cells)
             assert plainly(clipped_noise)(*args) == clipped_noise.reference(*args)
-            near = values, cells, 0.0, 1.0
+            near = values, cells, 0.0, 1.0, 1.0
             assert plainly(is_anywhere)(*near) == is_anywhere.reference(*near)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_hum_is_told_alike_in_loops(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    values = with_hum(rng, rng.uniform(0.0, 3.0), 300.0 * disc(rng.uniform(0.0, 5.0)))
+    known = rng.random((16, 16)) < 0.9
+    offsets = np.maximum(np.round(rng.normal(0.0, 20.0, (16, 16)) + rng.integers(500) * disc(4)), 0)
+    for cells in (EVERY, known):
+        for readings in (values, offsets):
+            args = given(readings, cells)
+            assert plainly(clipped_noise)(*args) == clipped_noise.reference(*args)

@@ -211,3 +211,25 @@ def test_how_many_lie_together_is_counted_alike_in_loops(shape, share):
     shows = np.random.default_rng(11).random(shape) < share
     ways = together.reference(shows), plainly(together)(shows), together.compiled(shows)
     assert len(set(ways)) == 1
+
+
+def test_ghosts_of_a_floating_circuit_do_not_show_in_spite_of_noise():
+    told = {
+        "circuit": {"kind": "floating"},
+        "converter": {"bits": 12},
+        "scan": {"samples": 1, "noise_v": 0.001},
+    }
+    pad, rng = load_pad(told), np.random.default_rng(9)
+    inside = np.zeros((16, 16), bool)
+    inside[2:6, 2:6] = inside[2:6, 9:13] = inside[9:13, 2:6] = True
+    load = np.where(inside, 80.0 * np.exp(0.3 * rng.standard_normal((16, 16))), 0.0)
+    siemens = np.where(inside, pad.law.conductance_s(load), 1e-10)
+    noisy = pad.volts_of(siemens) + 0.001 * rng.standard_normal((16, 16))
+    step = pad.converter.step_v
+    values = np.maximum(np.round(noisy / step) * step, 0.0)
+    assert (values[9:13, 9:13] > 0.02).all()
+    found = observed(image_of(values), pad)
+    on = found.states == ON
+    assert on[inside].mean() > 0.9
+    assert on[~inside].mean() < 0.03
+    assert np.median(np.abs(found.logs - np.log(np.maximum(load, 1.0)))[on & inside]) < 0.05

@@ -45,6 +45,47 @@ def test_single_elements_and_lines_that_read_high_are_stuck_but_blocks_are_an_ob
         resting(values, "it")
 
 
+def cut_off(spread, seed, shape=(16, 16)):
+    """Return frames of a device that reads no less than 0, with offsets of each element's own."""
+    rng = np.random.default_rng(seed)
+    offset = rng.normal(0.0, spread, shape)
+    return np.maximum(np.round(offset + rng.normal(0.0, 0.8, (50, *shape))), 0.0)
+
+
+@pytest.mark.parametrize("spread", [8.0, 40.0])
+@pytest.mark.parametrize("seed", range(6))
+def test_offsets_that_a_device_cuts_off_at_0_are_no_object(spread, seed):
+    values = cut_off(spread, seed)
+    assert resting(values, "it").good.all()
+    assert resting_among_objects(values, "it").stuck.sum() == 0
+    values[:, 3, 5] += 20.0 * spread
+    assert [tuple(at) for at in np.argwhere(resting(values, "it").stuck)] == [(3, 5)]
+    values[:, 8:11, 5:8] += 20.0 * spread
+    with pytest.raises(DataError, match="not empty: 9 neighbouring elements around row 9, column"):
+        resting(values, "it")
+
+
+@pytest.mark.parametrize("n", [2, 6, 11])
+def test_an_object_on_a_pad_that_reads_nothing_is_no_offset(n):
+    values = np.zeros((20, 16, 16))
+    values[:, 2 : 2 + n, 3 : 3 + n] = 30.0 + np.arange(n)
+    with pytest.raises(DataError, match=rf"not empty: {n * n} neighbouring elements"):
+        resting(values, "it")
+
+
+def test_hum_that_a_device_cuts_off_at_0_is_no_touch():
+    rng = np.random.default_rng(6)
+    phase = 0.155 * np.arange(16)[:, None] + rng.random((50, 1, 1))
+    hum = 4.0 * np.sin(2.0 * np.pi * phase) + rng.normal(0.0, 0.5, (50, 16, 16))
+    values = np.maximum(np.round(hum), 0.0)
+    found = resting(values, "it")
+    assert found.left_out == 0
+    assert found.good.all()
+    values[20:30, 3:5, 5:8] += 100.0
+    with pytest.raises(DataError, match="not empty: in 10 of 50 frames, first in frame 20"):
+        resting(values, "it")
+
+
 def test_noisy_still_and_missing_elements_are_no_good():
     rng = np.random.default_rng(2)
     _, values = still_pad()
