@@ -228,7 +228,7 @@ class _Line:
             code = self._process.exitcode
             self._process = None
         how = f"by {signal.Signals(-code).name}" if code and code < 0 else f"with code {code}"
-        died = DeadWorkerError(f"a worker ended {how}: {error or type(error).__name__}")
+        died = DeadWorkerError(f"a worker ended {how}: {error}".removesuffix(": "))
         died.__cause__ = error
         return died
 

@@ -27,7 +27,7 @@ def strange_within(value: Any) -> str:
         return _strange_array(value)
     if names := _looked_into(kind):
         for name in names:
-            item = getattr(value, name, None)
+            item: Any = getattr(value, name, None)
             kind = item.__class__
             if kind in PLAIN or (kind is float and item - item == 0.0):
                 continue  # half of the time: most fields are finite numbers
