@@ -100,3 +100,23 @@ def elsewhere(image: Image) -> int:
 def unsendable(image: Image) -> object:
     """Return what cannot be sent to another process."""
     return lambda: None
+
+
+def asks(image: Image) -> str:
+    """Read a line of standard input."""
+    return repr(sys.stdin.readline())
+
+
+def forks(image: Image) -> int:
+    """Return in two processes; the code of the other in the first."""
+    copy = os.fork()
+    return os.waitstatus_to_exitcode(os.waitpid(copy, 0)[1]) if copy else 7
+
+
+class OwnError(BaseException):
+    """What no `except Exception` takes."""
+
+
+def ends_all(image: Image) -> int:
+    """Raise what would end a program."""
+    raise (KeyboardInterrupt, OwnError)[int(image.values[0, 0])]("enough")

@@ -12,6 +12,7 @@ from typing import Any
 
 import click
 
+from tactile_graph.changes import home_kept
 from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
 from tactile_graph.cli.readable import encoding_of, open_all_readable, readable
 from tactile_graph.cli.say import say
@@ -37,7 +38,7 @@ def ending(run: Callable[[], Any], debug: bool) -> int:
     Interrupts.latest = None
     open_all_readable()
     try:
-        with Interrupts():
+        with Interrupts(), home_kept():
             code = run()
         sys.stdout.flush()  # a closed pipe must show itself here, not while Python shuts down
     except BrokenPipeError:

@@ -12,6 +12,7 @@ from typing import Any, Generic, NoReturn, Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.changes import changes
 from tactile_graph.engine.blocks.block import Block, Constant, Group, Repeats, first_settled
 from tactile_graph.engine.blocks.blocks import Blocks, worth_blocks
 from tactile_graph.engine.calls.calls import Call, make_call
@@ -27,6 +28,13 @@ from tactile_graph.engine.program import make_program
 from tactile_graph.errors import Degenerate, RuleError, UsageError
 from tactile_graph.pipeline.facts import quantity_trouble
 from tactile_graph.pipeline.graph import FrameRule, Graph, Node
+from tactile_graph.shared_process import (
+    errors_of_numpy,
+    go_away,
+    put_right,
+    righted,
+    steps_at_work,
+)
 from tactile_graph.steps.rules import square_wanted
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.frame_stack import FrameStack
@@ -113,9 +121,10 @@ class Runner(Generic[ResultT]):
         deciding = None if decider is None else Deciding(options_of(self.plan), decider)
         if deciding is not None:
             deciding.decider.prepare(deciding.options)
-        self._operations = make_program(
-            self.plan, self._call, self._blank, deciding=deciding, chained=not settings.verify
-        )
+        with righted():
+            self._operations = make_program(
+                self.plan, self._call, self._blank, deciding=deciding, chained=not settings.verify
+            )
         self._left, self._apart_before = {}, {}
         self._repeatable = self.plan.repeatable
         self._image = self.plan.image
@@ -271,7 +280,15 @@ class Runner(Generic[ResultT]):
         # As in `_settle`, whose call would take a tenth of an empty pad's time.
         context = self._context
         context.frame = frame
-        self._operations.run(state)
+        # As in `steps_at_work`, likewise.
+        before, errors = changes.n, errors_of_numpy()
+        if changes.away:
+            go_away()
+        try:
+            self._operations.run(state)
+        finally:
+            if changes.n != before or errors_of_numpy() is not errors:
+                put_right(before, errors)
         if context.inner_results or context.item_failures:
             self._note_items(state)
         if decider is not None:
@@ -309,6 +326,7 @@ class Runner(Generic[ResultT]):
 
     # -- many frames at once -------------------------------------------------------------------
 
+    @steps_at_work()
     def block(self, frames: FrameStack) -> Block[ResultT]:
         """Return the results of several frames, those that each would give one after the other.
 

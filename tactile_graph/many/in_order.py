@@ -24,6 +24,9 @@ TOLERATED = 2
 """Deaths with a portion under way before it is done with no other beside it."""
 DEADLY = 2
 """Deaths over the same frames, alone, by which these are to blame."""
+MOST_IN_A_ROW = 8
+"""Frames one after the other that kill, each alone, after which no more are tried: it is no frame
+that is to blame then."""
 BROKE = (BrokenExecutor, OSError, EOFError)
 """What an executor raises that is given work and cannot have it done any more."""
 PATIENCE_S = 5.0
@@ -78,6 +81,7 @@ class InOrder(Generic[Done]):
         self._under: deque[_Under] = deque()
         self._without = frozenset(without)
         self._why = ""
+        self._row: list[int] = []
         self.n_deaths = 0
         """How often a worker died."""
 
@@ -226,7 +230,18 @@ class InOrder(Generic[Done]):
             if place is not None:
                 self._without |= {place}
                 self._tell(place)
+                self._look_at_row(place)
                 portion = portion.leaving_out(self._without)
+
+    def _look_at_row(self, place: int) -> None:
+        """Note a frame that kills; raise DataError after `MOST_IN_A_ROW` without one between."""
+        self._row = [*self._row, place] if place - 1 in self._row[-1:] else [place]
+        if len(self._row) >= MOST_IN_A_ROW:
+            raise DataError(
+                f"frames {self._row[0]} to {place}",
+                f"each ended its worker, the last time {self._why}; no more are tried. A step "
+                "that is 'isolated: true' is named by its node, and costs that alone",
+            )
 
     def _deadly_place(self, portion: Portion) -> int | None:
         """Return the frame without which the frames before it kill nobody; None if none does.

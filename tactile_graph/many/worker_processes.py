@@ -9,6 +9,7 @@ when its process is.
 from __future__ import annotations
 
 import pickle
+import signal
 import threading
 import traceback
 from collections.abc import Callable
@@ -226,7 +227,8 @@ class _Line:
             self._process.join()
             code = self._process.exitcode
             self._process = None
-        died = DeadWorkerError(f"a worker ended with code {code}: {error or type(error).__name__}")
+        how = f"by {signal.Signals(-code).name}" if code and code < 0 else f"with code {code}"
+        died = DeadWorkerError(f"a worker ended {how}: {error}".removesuffix(": "))
         died.__cause__ = error
         return died
 

@@ -40,6 +40,7 @@ from tactile_graph.pipeline.scope import Scope
 from tactile_graph.pipeline.use import resolve_use
 from tactile_graph.pipeline.wiring import UNKNOWN, Ref, common_type
 from tactile_graph.plugins.mistakes import why
+from tactile_graph.shared_process import righted
 from tactile_graph.steps.settings import Trouble, spelled, validate_settings
 from tactile_graph.steps.signature import Kind, Signature
 
@@ -228,7 +229,8 @@ def _made(scope: Scope, declared: NodeDeclaration, node: Node) -> Node:
     """Build a class step once, so that settings it refuses are an error of the file."""
     try:
         rng = node.signature.rng if node.signature and node.signature.rng_at_init else ""
-        made = replace(node, callable=node.bound(**{rng: default_rng(0)} if rng else {}))
+        with righted():
+            made = replace(node, callable=node.bound(**{rng: default_rng(0)} if rng else {}))
     except Exception as error:  # a constructor may raise anything about its settings
         told = isinstance(error, TactileGraphError | ValueError) and str(error)
         text = told or f"step {declared.step!r} cannot be made: {why(error)}"

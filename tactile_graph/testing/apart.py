@@ -6,13 +6,18 @@ and where it has ended this is told; the next step is tried in a new one.
 
 from __future__ import annotations
 
-import os
 import sys
 from queue import Empty
 from typing import IO
 
 from tactile_graph.engine.calls.isolated import START_S, Process
-from tactile_graph.engine.calls.isolated_worker import ENDED, end_with_parent, received, sent
+from tactile_graph.engine.calls.isolated_worker import (
+    ENDED,
+    end_with_parent,
+    own_channels,
+    received,
+    sent,
+)
 from tactile_graph.plugins.registry import Registry, installed, restrict, selected
 from tactile_graph.testing.cases import ORDINARY
 from tactile_graph.testing.examination import Broken
@@ -106,8 +111,6 @@ def serve(orders: IO[bytes], answers: IO[bytes]) -> None:
 
 
 if __name__ == "__main__":
-    given, channel = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
-    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)  # a step that reads finds nothing
-    os.dup2(2, 1)  # what a step prints is for people
+    channels = own_channels()
     end_with_parent()
-    serve(given, channel)
+    serve(*channels)

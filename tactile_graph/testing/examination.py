@@ -176,6 +176,8 @@ class Examination:
             self._tell(case.name, f"writes into its input {', '.join(changed)}; change a copy")
             return trial  # an error on the way is one of the same kind
         self._tell(case.name, trial.trouble())
+        for what in trial.left:
+            self._tell(case.name, f"changes {what}, which all steps share; put it back")
         if trial.answered:
             misfit = self.subject.misfit(inputs, trial.value)
             self._tell(case.name, misfit or _bad(trial.value) or unshown(trial.value))

@@ -16,6 +16,8 @@ import numpy as np
 
 from tactile_graph.engine.operations.freeze import freeze
 from tactile_graph.errors import TactileGraphError, text_of
+from tactile_graph.shared_process import righted
+from tactile_graph.testing.left_behind import told_in
 
 FIRST_S = 60.0
 """How long an ordinary frame may take."""
@@ -50,6 +52,8 @@ class Trial:
         Of the processor, and by the clock.
     late : bool
         Whether it was stopped because it took too long.
+    left : tuple of str
+        What it left changed of the process that all steps share, by its name.
     """
 
     value: Any = None
@@ -58,6 +62,7 @@ class Trial:
     seconds: float = 0.0
     late: bool = False
     clock_s: float = 0.0
+    left: tuple[str, ...] = ()
 
     @property
     def answered(self) -> bool:
@@ -107,11 +112,14 @@ def attempt(
     package : str
         Whose lines errors are told by, rather than those of what it calls.
     """
+    left: list[str] = []
     start, start_s = time.process_time(), time.perf_counter()
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"), _limited(limit_s):
             warnings.simplefilter("ignore")
-            value = freeze(call(**arguments))
+            with righted(), told_in(left):  # a copy that the step forks is tried no further
+                start = time.process_time()
+                value = freeze(call(**arguments))
     except _TooLong:
         spent, clock_s = time.process_time() - start, time.perf_counter() - start_s
         return Trial(seconds=spent, late=True, clock_s=clock_s)
@@ -120,9 +128,9 @@ def attempt(
     except BaseException as error:  # SystemExit and whatever else a step may raise
         spent = time.process_time() - start
         where = _place(error, package)
-        return Trial(None, error.with_traceback(None), where, spent)
+        return Trial(None, error.with_traceback(None), where, spent, left=tuple(left))
     spent = time.process_time() - start
-    return Trial(value, seconds=spent, late=spent > limit_s)
+    return Trial(value, seconds=spent, late=spent > limit_s, left=tuple(left))
 
 
 def _place(error: BaseException, package: str) -> str:

@@ -75,6 +75,20 @@ def test_what_is_written_is_read_back(tmp_path: Path, n: int) -> None:
     assert [f.index for f in read_store(tmp_path / "a.zarr", start=5)] == list(range(5, n))
 
 
+def test_a_store_named_from_a_folder_is_read_to_its_end_from_any_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with StoreWriter(tmp_path / "r.zarr", chunk=8) as store:
+        for frame in frames(40):
+            store.write(frame)
+    monkeypatch.chdir(tmp_path)
+    report, n = Report(), 0
+    for _ in read_store(Path("r.zarr"), report):
+        n += 1
+        monkeypatch.chdir("/")
+    assert (n, report.counts["damaged records skipped"]) == (40, 0)
+
+
 def test_invalid_cells_truth_and_labels_are_kept(tmp_path: Path) -> None:
     values = np.ones((2, 2))
     values[0, 1] = np.nan

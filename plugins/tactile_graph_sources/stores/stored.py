@@ -312,8 +312,8 @@ def open_stored(path: Path) -> Stored:
         edges = [low, *range((low // chunk + 1) * chunk, high, chunk), high]
         pieces += [Piece(a, b, None) for a, b in pairwise(edges)]
     return Stored(
-        path,
-        journal,
+        path.absolute(),  # what is in it is read when somebody may have gone to another folder
+        replace(journal, path=journal.path.absolute()),
         attributes,
         metadata,
         journaled,

@@ -21,6 +21,7 @@ from tactile_graph.engine.outcomes.notices import assumed_by, notices
 from tactile_graph.engine.outcomes.outcome import Failed, Skipped, item_words
 from tactile_graph.engine.tables.block_columns import Part, known_finite, parts_of
 from tactile_graph.engine.tables.columns import OutputColumns, values_of
+from tactile_graph.engine.tables.strange import strange_within
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.stacks import Stack
 
@@ -171,7 +172,7 @@ class Tally:
                 self._keep(self.skipped, (output.output, outcome.origin), result, outcome)
             elif not isinstance(outcome, Failed):
                 values = values_of(result, output)
-                strange = self._look(output, values, result) or strange
+                strange = self._look(output, values, result, outcome) or strange
                 self._compare(output, values)
         good = Failed not in classes and Skipped not in classes
         empty = [gap for found in result.gaps.values() for gap in found]
@@ -259,12 +260,18 @@ class Tally:
         for node, text in notices(result).items():
             self.noticed.setdefault(node, _Noticed()).add(text, result.frame.index)
 
-    def _look(self, output: OutputColumns, values: dict[str, Any], result: Result) -> bool:
+    def _look(
+        self, output: OutputColumns, values: dict[str, Any], result: Result, outcome: Any
+    ) -> bool:
         """Note each value that is no number and should be one; return whether there is any."""
         strange = [c.key for c in output.values if not _finite(values.get(c.key))]
         for key in strange:
             self._keep(self.not_finite, (key, ""), result, values[key], str)
-        return bool(strange)
+        within = "" if strange else strange_within(outcome)
+        if within:
+            told = f"{output.output}{within}"
+            self._keep(self.not_finite, (output.output, ""), result, told, str)
+        return bool(strange or within)
 
     def _compare(self, output: OutputColumns, values: dict[str, Any]) -> None:
         errors = self.errors.setdefault(output.output, {})

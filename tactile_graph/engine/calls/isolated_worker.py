@@ -13,6 +13,8 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from typing import IO, Any
 
+from tactile_graph.changes import changes
+
 MADE, VALUE, ERROR, ENDED = "made", "value", "error", "ended"
 Message = tuple[str, Any]
 """What it is, and that; of an error that a call raised also where."""
@@ -86,10 +88,15 @@ def serve(orders: IO[bytes], answers: IO[bytes], made: Callable[[], None]) -> No
             sent(answers, (MADE, None))
             continue
         number, args, kwargs = order
+        before = changes.n
         try:
             answer: Message = VALUE, steps[number](*args, **kwargs)
-        except Exception as error:
+        except SystemExit:  # it ends its process
+            raise
+        except BaseException as error:  # KeyboardInterrupt too: no Ctrl-C comes here
             answer = ERROR, _told(error)
+        if changes.forked_at >= before:  # the copy that the step forked answers nobody
+            os._exit(0)
         _answer(answers, answer)
 
 
@@ -125,7 +132,7 @@ class _Kernels:
         self._answering.close()
 
 
-def _told(error: Exception) -> tuple[Exception, str]:
+def _told(error: BaseException) -> tuple[Exception, str]:
     """Return an error as it can be sent, and the line it was raised at."""
     from tactile_graph.engine.outcomes.outcome import raised_at, travelling
 
@@ -136,12 +143,25 @@ def _answer(answers: IO[bytes], answer: Message) -> None:
     try:
         sent(answers, answer)
     except Exception as error:  # whatever pickle says of it
-        sent(answers, (ERROR, (RuntimeError(f"gave {error}"), "")))
+        text = f"gave what pickle cannot send from its own process: {error}"
+        sent(answers, (ERROR, (RuntimeError(text), "")))
+
+
+def own_channels() -> tuple[IO[bytes], IO[bytes]]:
+    """Return where orders come from and answers go to, which were stdin and stdout until now.
+
+    What a step reads from there is at its end; what it prints is for people.
+    """
+    orders, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)
+    os.dup2(2, 1)
+    return orders, answers
 
 
 if __name__ == "__main__":
-    channel = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what a step prints is for people
+    channels = own_channels()
     end_with_parent()
     with _Kernels() as kernels:
-        serve(sys.stdin.buffer, channel, kernels.make_ready)
+        serve(*channels, kernels.make_ready)

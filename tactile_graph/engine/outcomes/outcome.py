@@ -142,16 +142,17 @@ class Failed:
         return f"<failed at {self.origin!r}: {self.reason}>"
 
 
-def travelling(error: Exception) -> Exception:
+def travelling(error: BaseException) -> Exception:
     """Return an error that is the same after pickling: itself, or one of its name, words and kind.
 
-    A plugin's own may not even come back.
+    A plugin's own may not even come back. What is no `Exception` comes as one of that name.
     """
     try:
         again = pickle.loads(pickle.dumps(error))
     except Exception:
         again = None
-    if type(again) is type(error) and text_of(again) == text_of(error):
+    same = type(again) is type(error) and text_of(again) == text_of(error)
+    if same and isinstance(error, Exception):
         return error
     kind = next((k for k in (Degenerate, Skip) if isinstance(error, k)), Exception)
     return _told(type(error).__name__, kind, text_of(error))

@@ -52,6 +52,18 @@ def test_deadly_frames_are_found_told_and_left_out(deadly: set[int]) -> None:
     assert left_out == sorted(deadly)
 
 
+def test_frames_that_kill_one_after_the_other_end_it_and_what_was_done_is_kept() -> None:
+    left_out: list[int] = []
+    told = "frames 14 to 21: each ended its worker, the last time .*; no more are tried"
+    with InOrder(place({*range(14, 60)}), frames, b"", left_out.append) as workers:
+        results = workers.results(portions(6))
+        came = [k for _ in range(2) for k in next(results)[1]]
+        with pytest.raises(DataError, match=told):
+            next(results)
+    assert came == [*range(14)]
+    assert left_out == [*range(14, 22)]
+
+
 def test_chance_deaths_beside_a_deadly_frame_blame_no_other() -> None:
     came, left_out = done(place({12}, chance=[11, 13, 14, 40]))
     assert (came, left_out) == ([k for k in range(60) if k != 12], [12])

@@ -61,7 +61,7 @@ def test_one_that_dies_over_half_an_answer_is_told_and_another_is_started(
 ) -> None:
     dead = workers.submit(killed_while_it_answers)
     rest = [workers.submit(own_process) for _ in range(4)]
-    with pytest.raises(DeadWorkerError):
+    with pytest.raises(DeadWorkerError, match="a worker ended by SIGKILL"):
         dead.result(PATIENCE_S)
     assert all(future.result(PATIENCE_S) for future in rest)
     at = [workers.submit(slowly, 0.2) for _ in range(4)]

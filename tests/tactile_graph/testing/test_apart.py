@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -40,9 +41,16 @@ def good(mask: Mask) -> int:
     return mask.count
 
 
+def forks(mask: Mask) -> int:
+    if not (copy := os.fork()):
+        raise SystemExit
+    os.waitpid(copy, 0)
+    return mask.count
+
+
 @hookimpl
 def tactile_graph_steps():
-    return {"ends": ends, "never_returns": never_returns, "good": good}
+    return {"ends": ends, "never_returns": never_returns, "good": good, "forks": forks}
 
 
 @hookimpl
@@ -79,6 +87,15 @@ def test_a_step_that_ends_its_process_or_never_returns_costs_its_own_trial(
         f"  step 'ends': {case}: ended its process with code 3",
         f"  step 'never_returns': {case}: was stopped, since it had not ended after 2 s",
     ]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
+def test_the_copy_of_a_step_that_forks_answers_for_no_step(found: registry.Registry) -> None:
+    trier = Apart(found)
+    reports = [trier.examine(name) for name in ("forks", "good", "forks", "good")]
+    trier.close()
+    assert [r.step for r in reports] == ["forks", "good", "forks", "good"]
+    assert not [line for r in reports for line in r.lines()]
 
 
 def test_a_step_that_its_plugin_has_run_apart_is_examined_apart(found: registry.Registry) -> None:

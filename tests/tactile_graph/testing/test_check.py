@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+import os
+import signal
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Callable
 from typing import Annotated, Any, NamedTuple
 
@@ -280,6 +283,52 @@ def test_what_is_broken_is_told_in_a_line(
     assert [line for line in lines if told in line], lines
     assert all(line.startswith(f"step {step.__name__!r}: ") for line in lines)
     assert len(lines) == 1 or step in SEVERAL
+
+
+def goes_away(mask: Mask) -> int:
+    os.chdir(os.path.dirname(__file__))
+    return mask.count
+
+
+def has_numpy_raise(mask: Mask) -> int:
+    np.seterr(all="raise")
+    return mask.count
+
+
+def has_warnings_raise(mask: Mask) -> int:
+    warnings.simplefilter("error")
+    return mask.count
+
+
+def handles_signals(mask: Mask) -> int:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    return mask.count
+
+
+def draws(mask: Mask) -> int:
+    np.random.random()  # noqa: NPY002
+    return mask.count
+
+
+@pytest.mark.parametrize(
+    ("step", "what"),
+    [
+        (goes_away, "the current folder"),
+        (has_numpy_raise, "how NumPy tells errors"),
+        (has_warnings_raise, "whether warnings are errors"),
+        (handles_signals, "the handlers of signals"),
+        (draws, "the random numbers of numpy.random"),
+    ],
+)
+def test_what_a_step_changes_for_all_steps_is_told_and_put_back(
+    step: Callable[..., Any], what: str
+) -> None:
+    before = os.getcwd(), np.geterr(), signal.getsignal(signal.SIGTERM)
+    report = examine_step(step)
+    assert [b.what for b in report.broken] == [
+        f"changes {what}, which all steps share; put it back"
+    ]
+    assert (os.getcwd(), np.geterr(), signal.getsignal(signal.SIGTERM)) == before
 
 
 def waits(image: Image) -> float:

@@ -47,6 +47,42 @@ def silent(image: Image) -> float:
     raise ValueError
 
 
+@dataclass(frozen=True)
+class Inner:
+    q_cm: float
+
+
+@dataclass(frozen=True)
+class Outer:
+    inner: Inner
+    _own: float = float("nan")
+
+
+def listed(image: Image) -> list[float | None]:
+    return [1.0, None, float("nan")]
+
+
+def named(image: Image) -> dict[str, list[float]]:
+    return {"a": [1.0, float("-inf")]}
+
+
+def array(image: Image) -> Any:
+    return np.array([1.0, np.nan, np.inf])
+
+
+def nested(image: Image) -> Outer:
+    return Outer(Inner(float("nan")))
+
+
+def circles(image: Image) -> list[Circle]:
+    return [Circle(1.0, 1.0, 1.0), Circle(1.0, float("nan"), 1.0)]
+
+
+def fine(image: Image) -> list[Any]:
+    own = Outer(Inner(1.0))
+    return [own, {"a": 10**400}, "nan", np.ma.masked_invalid([1.0, np.nan]), np.ones(2, int)]
+
+
 def three(image: Image) -> list[int]:
     return [1, 2, 3]
 
@@ -57,7 +93,9 @@ def odd(number: int) -> float:
     return number / 2
 
 
-STEPS = {f.__name__: f for f in (nowhere, endless, InPlace, wordy, silent, three, odd)}
+WITHIN = (listed, named, array, nested, circles, fine)
+ALL = (nowhere, endless, InPlace, wordy, silent, three, odd, *WITHIN)
+STEPS = {f.__name__: f for f in ALL}
 
 
 @pytest.fixture(autouse=True)
@@ -85,6 +123,29 @@ def test_infinity_of_any_precision_is_told_and_kept_in_the_record() -> None:
     assert got.exit_code == 1
     assert "strange  a in 3 frames, first in frame 0: inf" in got.stderr
     assert json.loads(Path("out.jsonl.meta.json").read_text())["result"]["frames_not_finite"] == 3
+
+
+@pytest.mark.parametrize(
+    ("step", "told"),
+    [
+        ("listed", "a[2] is nan"),
+        ("named", "a['a'][1] is -inf"),
+        ("array", "a holds 2 numbers of 3 that are not finite"),
+        ("nested", "a.inner.q_cm is nan"),
+        ("circles", "a[1].y_cm is nan"),
+    ],
+)
+def test_what_is_not_finite_within_an_output_is_told_by_its_place(step: str, told: str) -> None:
+    got = run(step, "-o", "out.jsonl")
+    assert got.exit_code == 1
+    assert f"strange  a in 3 frames, first in frame 0: {told}, which is no answer\n" in got.stderr
+    assert json.loads(Path("out.jsonl.meta.json").read_text())["result"]["frames_not_finite"] == 3
+
+
+def test_what_is_masked_kept_for_itself_or_no_number_is_nothing_strange() -> None:
+    got = run("fine", "-o", "out.jsonl")
+    assert "strange" not in got.stderr
+    assert got.exit_code == 0
 
 
 def test_writing_into_what_was_given_away_says_what_to_do() -> None:

@@ -35,6 +35,9 @@ OWN = {
     "elsewhere": steps.elsewhere,
     "readiness": kernel_steps.readiness,
     "unsendable": steps.unsendable,
+    "asks": steps.asks,
+    "forks": steps.forks,
+    "ends_all": steps.ends_all,
 }
 
 
@@ -112,6 +115,23 @@ def test_what_the_step_raises_and_prints_comes_through(capfd: pytest.CaptureFixt
     assert runner(frame(steps.PRINTS))["risky"] == steps.PRINTS
 
 
+def test_a_step_that_reads_standard_input_finds_nothing_there() -> None:
+    runner = pipeline("step: asks, in: frame, time_limit_s: 30").runner()
+    assert runner(frame(0))["risky"] == "''"
+
+
+def test_what_would_end_a_program_fails_the_node_and_is_no_ctrl_c() -> None:
+    runner = pipeline("step: ends_all, in: frame, isolated: true").runner()
+    reasons = [runner(frame(i)).outcome("risky").reason for i in range(2)]
+    assert reasons == ["KeyboardInterrupt: enough", "OwnError: enough"]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
+def test_a_copy_that_a_step_forks_answers_nobody() -> None:
+    runner = pipeline("step: forks, in: frame, isolated: true").runner()
+    assert [runner(frame(i, i))["risky"] for i in range(3)] == [0, 0, 0]
+
+
 def test_what_a_step_raises_is_told_as_at_home_with_the_line_of_its_code() -> None:
     at_home = pipeline("step: raises, in: frame").runner()
     away = pipeline("step: raises, in: frame, isolated: true").runner()
@@ -178,7 +198,8 @@ def test_it_runs_in_another_process_which_ends_with_the_runner() -> None:
 
 def test_what_cannot_be_sent_is_told() -> None:
     runner = pipeline("step: unsendable, in: frame, isolated: true").runner()
-    assert "RuntimeError: gave " in runner(frame(0)).outcome("risky").reason
+    told = "RuntimeError: gave what pickle cannot send from its own process: "
+    assert told in runner(frame(0)).outcome("risky").reason
 
     def local(image: Image) -> int:
         return 0
