@@ -20,6 +20,9 @@ SLOPE = 0.8
 """By how much a radius or half a side grows with the gap where a limit holds most readings: then
 what shows at all tells where the rim is."""
 
+CLEARLY = 1.5
+"""Deviations by which a told gap must be off to be another."""
+
 EVEN = 0.25
 """Sigma of a fit up to which readings tell the gap of a pad whose gap was told."""
 
@@ -110,8 +113,8 @@ def sized(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings, 
     Readings
         With the deviation of lengths that is left, as nobody knows the gap better. The same on a
         single row, where the gap was said, and where it was told of the pad and readings scatter
-        too much to tell another; the same but for that deviation where a limit holds readings, so
-        that the rim tells little.
+        too much to tell another; the same but for that deviation where they do not clearly tell
+        another, or a limit holds them, so that the rim tells little.
     Likeliest
     """
     guess = readings.gap
@@ -124,6 +127,8 @@ def sized(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings, 
     tried = Tried(model, readings, even, guess)
     best = tried.best()
     steps, std_cm = tried.around(best)
+    if guess.is_told and abs(steps) * STEP * float(readings.grid[2]) < CLEARLY * std_cm:
+        steps = 0.0
     found, its = tried.at(steps)
     if its.mode.height == -math.inf:
         return readings, even
