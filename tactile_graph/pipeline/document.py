@@ -309,11 +309,20 @@ class _Reader:
             value = self._scalar(node)
             if isinstance(value, bool):
                 self.document._switches[path] = str(node.value)
-            elif node.style != "|" and node.start_mark.line != node.end_mark.line:
+            elif self._has_lines_joined(node):
                 self.document._joined.add(path)
             return value
         self.document.problem_at(self._mark(node), _refused(node.tag))
         return None
+
+    def _has_lines_joined(self, node: yaml.ScalarNode) -> bool:
+        begin, end = node.start_mark, node.end_mark
+        if node.style == "|" or begin.line == end.line:
+            return False
+        lines = self.document.text[begin.index : end.index].splitlines()
+        if node.style == ">":  # its sign has a line of its own
+            del lines[0]
+        return sum(not line.isspace() for line in lines if line) > 1
 
     def _scalar(self, node: yaml.ScalarNode) -> Any:
         if node.tag == "tag:yaml.org,2002:timestamp":

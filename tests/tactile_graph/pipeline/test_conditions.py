@@ -312,6 +312,14 @@ def test_a_comment_whose_line_yaml_joins_to_the_next_is_refused(style: str) -> N
         loads(COMMENTED.format(style=style))
 
 
+@pytest.mark.parametrize("style", [">", ">-", "|"])
+def test_a_comment_behind_the_only_line_of_a_condition_swallows_nothing(style: str) -> None:
+    text = COMMENTED.format(style=style).replace("           # began\n      and", " and")
+    guard = loads(text).nodes["a"].guard
+    assert guard is not None
+    assert guard.text == "frame.index > 0 and frame.index > 5"
+
+
 @pytest.mark.slow
 @settings(max_examples=150, deadline=None, derandomize=True)
 @given(text=st.text(st.sampled_from("ab.()[]<>=!+-*/%'\", 01notandri\n"), max_size=30))

@@ -37,6 +37,8 @@ _OFFSETS_H = 15
 """No zone is as far from UTC."""
 _ZONED = re.compile(r"(.*\d:\d\d:\d\d\S*)\s*\(?([A-Za-z][A-Za-z/_]{1,30})\)?")
 _HOURS = re.compile("%[HIcXT]")
+_LAST_COLON = re.compile(r"\d:\d\d:\d\d:\d")
+"""What a time holds that has something behind a last colon."""
 
 
 class Moment(NamedTuple):
@@ -148,7 +150,7 @@ def colon_unit_s(texts: Iterable[str]) -> float:
 
     Decimals are written with as many digits each; where they differ, they are whole units.
     """
-    found = [moment_of(text) for text in texts]
+    found = [moment_of(text) for text in texts if _LAST_COLON.search(text)]
     digits = {m.colon_digits for m in found if m is not None and m.colon_digits}
     if len(digits) < 2:
         return 0.0

@@ -10,6 +10,7 @@ import pytest
 
 from helpers_recordings import frames_of, npz_bytes, write
 from tactile_graph.errors import DataError
+from tactile_graph_sources.readers.words import moments
 from tactile_graph_sources.readers.words.moments import clock_s, colon_unit_s, zone_remedy
 from tactile_graph_sources.readers.words.running_clock import RunningClock
 
@@ -112,6 +113,11 @@ def test_behind_a_colon_milliseconds_are_known_by_their_differing_digits(
     ends: list[str], expected: list[float]
 ) -> None:
     assert run([f"12:00:{end}" for end in ends]) == (expected, set())
+
+
+def test_times_without_a_last_colon_are_not_read_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(moments, "moment_of", None)
+    assert colon_unit_s(["12:00:01.5", "12:00:01", "", *(t.partition("+")[0] for t in SPRING)]) == 0
 
 
 def test_few_digits_behind_a_colon_are_told_and_refused_where_more_come() -> None:
