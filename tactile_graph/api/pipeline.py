@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from threading import local
 from typing import TYPE_CHECKING, Any
 
 from tactile_graph.api.arguments import (
@@ -44,6 +43,9 @@ if TYPE_CHECKING:
     from tactile_graph.wires.image import Image
 
 Steps = Mapping[str, Callable[..., Any]]
+_Asked = tuple[tuple[str, ...], int]
+MOST_KEPT = 16
+"""Of how many demands, names asked for and seed, a pipeline keeps runners for `Pipeline.run`."""
 
 
 def load(
@@ -122,11 +124,28 @@ def loads(
     return Pipeline.of(parse_graph(checked_text(text), file, _registry(registry, steps)))
 
 
-class _Kept(local):
-    """The runners that each thread keeps: a runner serves one, and goes with it."""
+class _Kept:
+    """The runners that nobody uses just now; one serves one thread at a time, of any age.
+
+    There is no lock: each line that changes something is one operation of a dict or a list.
+    """
 
     def __init__(self) -> None:
-        self.runners: dict[tuple[tuple[str, ...], int], Runner[Result]] = {}
+        self.free: dict[_Asked, list[Runner[Result]]] = {}
+
+    def take(self, asked: _Asked) -> Runner[Result] | None:
+        """Return a runner that nobody else has until it is given back; None where there is none."""
+        try:
+            return self.free[asked].pop()
+        except (KeyError, IndexError):
+            return None
+
+    def give_back(self, asked: _Asked, runner: Runner[Result]) -> None:
+        """Keep a runner for the next call."""
+        self.free.setdefault(asked, []).append(runner)
+        if len(self.free) > MOST_KEPT:
+            for oldest in list(self.free)[:-MOST_KEPT]:
+                self.free.pop(oldest, None)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -187,7 +206,14 @@ class Pipeline(Graph):
         UsageError
             If it is a path, or several frames; if ``only`` or ``seed`` is of the wrong type.
         """
-        result = self._runner(checked_names(only), seed)(as_frame(frame))
+        seed = seed if seed.__class__ is int else checked_seed(seed)
+        asked = checked_names(only), seed
+        runner = self._kept.take(asked) or self.runner(*asked)
+        try:
+            result = runner(as_frame(frame))
+        finally:
+            if not runner.stateful:
+                self._kept.give_back(asked, runner)
         if self.promises.waiting:
             self.promises.check(result)
         return result
@@ -329,18 +355,6 @@ class Pipeline(Graph):
 
         settings = RunSettings(checked_seed(seed), verify, decider, after)
         return Runner(self, checked_names(only), Result, settings)
-
-    def _runner(self, only: tuple[str, ...], seed: int) -> Runner[Result]:
-        """Return a fresh runner, or the thread's last one where no step keeps state."""
-        seed = seed if seed.__class__ is int else checked_seed(seed)
-        kept = self._kept.runners
-        key = (only, seed)
-        runner = kept.get(key)
-        if runner is None or runner.stateful:
-            runner = kept[key] = self.runner(only, seed)
-            if len(kept) > 16:
-                kept.pop(next(iter(kept)))
-        return runner
 
     @cached_property
     def _kept(self) -> _Kept:

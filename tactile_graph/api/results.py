@@ -52,6 +52,8 @@ class Results(Iterator[Result]):
         try:
             result = next(self._results)
         except StopIteration:
+            if not self._broken:
+                self._source = ()  # nothing is left in it to be closed, or held
             if self._broken and not self._told:
                 self._told = True  # once: who goes on after any error would never come to the end
                 raise UsageError(

@@ -265,7 +265,7 @@ def _parent(name: str, document: Document, registry: Registry) -> str:
 def evolves_in_circle(graph: Graph) -> str:
     """Return the names of pipelines that evolve from each other, ``a -> b -> a``; "" of none."""
     registry, name = graph.registry or installed(), graph.evolves
-    file = Path(graph.files.place(graph.file))
+    file = Path(_shown(Path(graph.files.place(graph.file))))
     names, files = [graph.name], [file.resolve()]
     while name:
         try:

@@ -41,26 +41,35 @@ def test_a_bare_array_is_told_to_be_no_frame() -> None:
         pipeline().runner()(np.ones((2, 2)))  # type: ignore[arg-type]
 
 
-def test_each_thread_keeps_its_runner_however_many_there_are(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    made: list[weakref.ref[Any]] = []
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> list[weakref.ref[Any]]:
+    """The runners that pipelines have made."""
+    found: list[weakref.ref[Any]] = []
     make = Pipeline.runner
 
     def noted(*given: Any, **more: Any) -> Any:
         runner = make(*given, **more)
-        made.append(weakref.ref(runner))
+        found.append(weakref.ref(runner))
         return runner
 
     monkeypatch.setattr(Pipeline, "runner", noted)
+    return found
+
+
+def test_as_many_runners_are_made_as_threads_run_at_once(made: list[weakref.ref[Any]]) -> None:
     n = 40
-    stateless = pipeline(FLOW.replace("count", "add1"))
     together = Barrier(n)
+
+    def slow(image: Image) -> Image:
+        together.wait(60)
+        return image
+
+    text = "pipeline: p\nnodes: {a: {step: slow, in: frame}}\noutputs: [a]\n"
+    held = [loads(text, steps={"slow": slow})]
 
     def work() -> None:
         for i in range(3):
-            together.wait()
-            assert stateless.run(frame(10, i))["sum"] == 11
+            held[0].run(frame(10 + i, i))
 
     threads = [Thread(target=work) for _ in range(n)]
     for thread in threads:
@@ -68,15 +77,49 @@ def test_each_thread_keeps_its_runner_however_many_there_are(
     for thread in threads:
         thread.join()
     assert len(made) == n
+    held.clear()
     gc.collect()
-    assert not [runner for runner in made if runner() is not None]  # gone with their threads
+    assert not [runner for runner in made if runner() is not None]
 
 
-def test_a_thread_keeps_a_bounded_number_of_runners() -> None:
+def test_a_thread_for_each_frame_needs_no_runner_of_its_own(made: list[weakref.ref[Any]]) -> None:
+    stateless = pipeline(FLOW.replace("count", "add1"))
+    got: list[Any] = []
+    for i in range(20):
+        thread = Thread(target=lambda i=i: got.append(stateless.run(frame(10, i))["sum"]))
+        thread.start()
+        thread.join()
+    assert got == [11] * 20
+    assert len(made) == 1
+
+
+def test_a_step_may_run_the_pipeline_it_is_in(made: list[weakref.ref[Any]]) -> None:
+    def halved(image: Image) -> Image:
+        if image.rows == 1:
+            return image
+        half: Image = own.run(Image(image.values[: image.rows // 2]))["a"]
+        return half
+
+    text = "pipeline: p\nnodes: {a: {step: halved, in: frame}}\noutputs: [a]\n"
+    own = loads(text, steps={"halved": halved})
+    for _ in range(2):
+        assert own.run(np.arange(8.0).reshape(4, 2))["a"].values.tolist() == [[0.0, 1.0]]
+    assert len(made) == 3
+
+
+def test_a_runner_whose_frame_is_refused_is_kept(made: list[weakref.ref[Any]]) -> None:
+    stateless = pipeline(FLOW.replace("count", "add1"))
+    for _ in range(3):
+        with pytest.raises(UsageError):
+            stateless.run("my.npy")  # type: ignore[arg-type]
+    assert len(made) == 1
+
+
+def test_runners_of_a_bounded_number_of_demands_are_kept() -> None:
     stateless = pipeline(FLOW.replace("count", "add1"))
     for seed in range(40):
         stateless.run(frame(10), seed=seed)
-    assert len(stateless._kept.runners) == 16
+    assert [seed for _, seed in stateless._kept.free] == [*range(24, 40)]
 
 
 def test_a_node_that_computes_the_same_goes_on_and_one_that_reads_another_begins_anew() -> None:

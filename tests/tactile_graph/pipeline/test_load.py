@@ -21,6 +21,7 @@ from tactile_graph import Frame, Image, Mask, loads
 from tactile_graph.api.pipeline import load
 from tactile_graph.cli.watch import Stamp, files_read
 from tactile_graph.errors import PipelineError, PluginError, UsageError
+from tactile_graph.pipeline.load import evolves_in_circle
 from tactile_graph.steps import Grid, Quantity
 
 
@@ -795,3 +796,17 @@ def test_steps_that_are_no_functions_by_name_are_refused(steps: Any, told: str) 
         loads(text, steps=steps)
     with pytest.raises(UsageError, match="registry must be a Registry, got dict; steps="):
         loads(text, "p.yaml", {"x": len})  # type: ignore[arg-type]
+
+
+def test_a_parent_that_is_looked_into_has_the_name_it_is_looked_for_by(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    nodes = "nodes: {{a: {{step: threshold, in: frame, with: {{level: auto}}}}}}"
+    text = f"pipeline: {{}}\n{{}}{nodes}\noutputs: [a]\n"
+    (tmp_path / "child.yaml").write_text(text.format("child", "evolves: parent.yaml\n"))
+    (tmp_path / "parent.yaml").write_text(text.format("parent", ""))
+    monkeypatch.chdir(tmp_path)
+    read: dict[str, Any] = {}
+    with files_read(read):
+        assert evolves_in_circle(load("child.yaml")) == ""
+    assert sorted(name for name in read if name.endswith("parent.yaml")) == ["parent.yaml"]

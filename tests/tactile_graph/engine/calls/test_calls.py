@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import functools
+import gc
+import weakref
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
@@ -336,3 +338,14 @@ def test_one_output_may_be_asked_for_by_its_name() -> None:
     text = "pipeline: p\nnodes:\n  ab: {step: noisy, in: frame}\noutputs: [ab]\n"
     pipeline = loads(text, "p.yaml", registry({"noisy": noisy}))
     assert set(pipeline.run(np.zeros((2, 2)), only="ab")) == {"ab"}
+
+
+def test_a_stream_that_has_ended_holds_no_frames() -> None:
+    frames = (frame(n) for n in range(3))
+    held = weakref.ref(frames)
+    text = "pipeline: p\nnodes: {a: {step: scaled, in: frame}}\noutputs: [a]\n"
+    results = loads(text, "p.yaml", registry(STEPS)).stream(frames)
+    assert len(list(results)) == 3
+    del frames
+    gc.collect()
+    assert held() is None
