@@ -11,7 +11,7 @@ STEP = 0.1
 """Of a pitch: by how much gaps differ that are tried."""
 
 MOST = 0.5
-"""Of a pitch: no gap is wider."""
+"""Of a pitch: no gap is wider, unless it is taken to be."""
 
 SURE = 0.04
 """Of a pitch: no gap is known better."""
@@ -43,6 +43,7 @@ class Tried:
         self._model, self._readings, self._guess = model, readings, guess
         self._pitch = float(readings.grid[2])
         self._told = self._pitch - float(readings.grid[3])
+        self._most = max(MOST * self._pitch, self._told) + 1e-9
         self._found: dict[float, tuple[Readings, Likeliest]] = {0.0: (readings, even)}
 
     def gap_cm(self, steps: float) -> float:
@@ -63,7 +64,7 @@ class Tried:
     def log_chance(self, steps: float) -> float:
         """Return the log posterior there, with what is believed of gaps; -inf where none can be."""
         gap = self.gap_cm(steps)
-        if not -1e-9 <= gap <= MOST * self._pitch:
+        if not -1e-9 <= gap <= self._most:
             return -math.inf
         off = (gap - self._guess.middle_cm) / self._guess.std_cm
         return self.at(steps)[1].mode.height - 0.5 * off * off

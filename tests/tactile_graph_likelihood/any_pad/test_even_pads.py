@@ -2,6 +2,7 @@
 
 import math
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -115,3 +116,14 @@ def test_counts_leave_lengths_less_certain_than_a_calibrated_pad():
     images = (Image(values, (1.0, 1.0), (0.0, 0.0), unit) for unit in ("kilopascal", "counts"))
     calibrated, counts = (LocateDisc(settings)(image).radius_std_cm for image in images)
     assert counts == pytest.approx(math.hypot(calibrated, 0.05), rel=0.05)
+
+
+@many
+@pytest.mark.parametrize("gap_cm", [0.5, 0.55, 0.65])
+def test_a_told_gap_of_half_a_pitch_or_more_is_one_that_may_be(gap_cm):
+    kind = replace(MORE_KINDS["even"], element_cm=1.0 - gap_cm, gap_cm=gap_cm, noise_g=0.2)
+    geometry = {"element_cm": 1.0 - gap_cm, "gap_cm": gap_cm}
+    step = LocateDisc(LocateSettings(pad={"geometry": geometry}))
+    frames = Bench(kind, np.random.default_rng(6)).frames(12)
+    off = [step(frame.image).radius_cm - frame.truth[0].shape.radius_cm for frame in frames]
+    assert np.mean(np.abs(off)) < 0.06
