@@ -10,7 +10,7 @@ from tactile_graph_likelihood.any_pad.from_frame import NORMAL
 from tactile_graph_likelihood.any_pad.gap import sized
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, unknowns
-from tactile_graph_likelihood.single.element_terms import HIGH, ON, OVER, SPAN
+from tactile_graph_likelihood.single.element_terms import HIGH, ON, OVER, SPAN, UNKNOWN
 from tactile_graph_likelihood.single.model import Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA
 from tactile_graph_likelihood.single.readings import Readings
@@ -21,6 +21,9 @@ holds much of a face, few of them do."""
 
 WHOLE, LITTLE = 0.97, 0.1
 """Covered share from which on an element is of the face, and from which on it is under the rim."""
+
+MOST_VOIDS = 0.05
+"""Share of the elements of an even pad's face that read nothing."""
 
 FEWEST = 4
 """Elements of the face, and under the rim, that tell how they scatter."""
@@ -88,11 +91,17 @@ def _on_rim(model: Model, readings: Readings, its: Likeliest) -> float:
 
 
 def _strangeness(model: Model, readings: Readings, its: Likeliest, noise: float) -> float:
-    """Return how much more readings under the rim scatter than those of the face and noise do."""
+    """Return how much more readings under the rim scatter than those of the face and noise do.
+
+    Infinite where the face has voids, which no even pad has.
+    """
     p, shape = model.point_of(its), readings.states.shape
     share = covered.call(model.kind, model.corners, p, readings.grid, (0, 0, *shape))
-    shows = readings.states == ON
+    shows, known = readings.states == ON, readings.states != UNKNOWN
     face, rim = shows & (share >= WHOLE), shows & (share > LITTLE) & (share < WHOLE)
+    voids = np.count_nonzero(known & ~shows & (share >= WHOLE))
+    if voids > max(MOST_VOIDS * np.count_nonzero(known & (share >= WHOLE)), 1.0):
+        return math.inf
     if np.count_nonzero(face) < FEWEST or np.count_nonzero(rim) < FEWEST:
         return math.inf
     logs, load = readings.logs, float(p[unknowns.call(model.kind, model.corners)])

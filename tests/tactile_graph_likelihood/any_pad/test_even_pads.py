@@ -96,6 +96,17 @@ def test_an_even_face_is_told_from_readings_that_a_limit_holds(kind, most, least
 
 
 @many
+def test_a_face_with_voids_that_a_limit_holds_is_none_of_an_even_pad():
+    noisy, freed = replace(KINDS["saturation 60 g"], saturation_g=30.0, noise_v=3e-3), []
+    for frame in Bench(noisy, np.random.default_rng(5)).frames(30):
+        readings, fits, even = begun(frame)
+        if readings.unheld is not None:
+            freed.append(unheld(fits._fit(EVEN), readings, even)[0].unheld is None)
+    assert len(freed) > 12
+    assert not any(freed)
+
+
+@many
 def test_readings_without_a_limit_are_as_they_were():
     readings, fits, even = begun(frames_of("noise 0.2 mV", 1)[0])
     assert readings.unheld is None
