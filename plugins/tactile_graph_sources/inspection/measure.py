@@ -22,6 +22,7 @@ FEWEST_FRAMES = 5
 TOUCHED = 0.2
 """Share of the peak above the offset that a cell's neighbours must have seen to call it dead."""
 STUCK, MOST_STUCK, FEWEST_TO_STICK = 0.05, 0.2, 30
+OUT_OF_ORDER = 3.0  # usual steps by which frames may come out of order, on one clock
 """Share of the peak above the offset at which a cell that never changes is stuck; the most of all
 such cells that can be; and the frames it takes."""
 FAR_BELOW = 10.0
@@ -330,4 +331,5 @@ def _pace(frames: Sequence[Frame]) -> _Pace:
     usual = float(np.median(onward))
     jitter = float(np.median(np.abs(onward - usual))) * MAD_TO_SD / usual
     n_leaps = sum(is_leap(float(step), usual) for step in steps)
-    return _Pace(1.0 / usual, jitter, n_leaps, float(taken[taken > 0].sum()))
+    passed = taken[(taken > 0) | (taken >= -OUT_OF_ORDER * usual)]
+    return _Pace(1.0 / usual, jitter, n_leaps, float(passed.sum()))

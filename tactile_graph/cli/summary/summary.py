@@ -20,6 +20,8 @@ LONG = ("output", "item", "outcome", "type")
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
 HALF_TURN = {"°": 180.0, "rad": math.pi}
 """By unit of an angle; axes, as those of shapes, wrap at a quarter to either side of 0."""
+JITTER = 3.0
+"""Usual steps by which frames may come out of order, on one clock."""
 MOST_WORDS = 1000
 """How many different reasons or texts are told apart."""
 OTHERS = "(others)"
@@ -49,7 +51,7 @@ class Times:
     """When frames were taken, in the clock of their recording."""
 
     lasts_s: float | None = None
-    """What passed from frame to frame, where a clock that goes back counts nothing; None where no
+    """What passed from frame to frame, where a clock that begins anew counts nothing; None where no
     frame has a time."""
     n_back: int = 0
     """How often the clock goes back."""
@@ -60,7 +62,10 @@ class Times:
         known = time_s[np.isfinite(time_s)]
         if known.size:
             steps = np.diff(known, prepend=self._last_s)
-            self.lasts_s = (self.lasts_s or 0.0) + float(steps[steps > 0.0].sum())
+            onward = steps[steps > 0.0]
+            near = JITTER * float(np.median(onward)) if onward.size else 0.0
+            passed = steps[(steps > 0.0) | (steps >= -near)]
+            self.lasts_s = (self.lasts_s or 0.0) + float(passed.sum())
             self.n_back += int(np.count_nonzero(steps < 0.0))
             self._last_s = float(known[-1])
 

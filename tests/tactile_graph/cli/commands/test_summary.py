@@ -75,6 +75,15 @@ def test_a_joined_recording_lasts_as_long_as_its_parts() -> None:
     )
 
 
+def test_frames_a_little_out_of_order_last_no_longer() -> None:
+    head = "frame,time_s,load.outcome,load.total\n"
+    times = [0.1 * k - 0.15 * (k in (7, 20, 33)) for k in range(50)]
+    Path("out_of_order.csv").write_text(
+        head + "".join(f"{k},{t:.2f},ok,5\n" for k, t in enumerate(times))
+    )
+    assert of("out_of_order.csv")["lasts_s"] == pytest.approx(4.9)
+
+
 def test_errors_are_by_their_size_and_angles_have_no_mean() -> None:
     told = of("out.csv")["quantities"]
     error = told["circle.centre_error_cm"]
