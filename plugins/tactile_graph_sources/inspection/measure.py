@@ -21,8 +21,9 @@ FEWEST_FRAMES = 5
 """Frames from which on a cell that never changes says something."""
 TOUCHED = 0.2
 """Share of the peak above the offset that a cell's neighbours must have seen to call it dead."""
+OUT_OF_ORDER = 3.0
+"""Usual steps by which frames may come out of order, on one clock."""
 STUCK, MOST_STUCK, FEWEST_TO_STICK = 0.05, 0.2, 30
-OUT_OF_ORDER = 3.0  # usual steps by which frames may come out of order, on one clock
 """Share of the peak above the offset at which a cell that never changes is stuck; the most of all
 such cells that can be; and the frames it takes."""
 FAR_BELOW = 10.0
