@@ -42,8 +42,13 @@ FEW_STEPS = 8.0
 """Of a converter, up to which what is alike along rows or columns may be hum; a frame of two
 values is a mat of switches, which has none."""
 
-FEWEST_RUNS = 2
-"""Of noisy rows or columns, with quiet ones between: hum has them, a load does not."""
+FEWEST_RUNS, LONGEST_TURN = 2, 16
+"""Of noisy rows or columns, with quiet ones between: hum has them, a load does not. And how many
+lines they are apart at most: what is slower, or fewer cells than lines, may as well be loads."""
+
+UNEVEN = 3.0
+"""Standard deviations by which what is above rest may be spread less evenly along the lines than by
+chance: hum lies on whole lines, loads side by side on parts of them."""
 
 
 def _noise_plain(values: Values, known: Cells, sample: Values, rest: float, step: float) -> float:
@@ -152,7 +157,7 @@ def _is_anywhere_plain(values: Values, known: Cells, rest: float, reach: float, 
     Pairs of neighbours, also across corners, are counted among cells at rest and those above (P.
     A. P. Moran 1948, The interpretation of statistical maps). Up to ``hum``, chance is also what
     each row or each column has: hum shifts whole ones by a few steps. Noisy ones then alternate
-    with quiet ones, as under no single load.
+    with quiet ones, as under no single load, and are noisy anywhere along them.
     """
     free = (values >= rest) & (values <= rest + reach)
     if known.size:
@@ -218,6 +223,7 @@ def _is_by_line_plain(state: NDArray[np.uint8], both: int, share: float) -> bool
     share : float
         Of cells that are above, over all rows.
     """
+    rows, columns = state.shape
     free = state > 0
     n_free, n_noisy = free.sum(axis=1), (state == 2).sum(axis=1)
     shares = n_noisy / np.maximum(n_free, 1)
@@ -226,7 +232,13 @@ def _is_by_line_plain(state: NDArray[np.uint8], both: int, share: float) -> bool
         if loud != (its > (0.5 * share if loud else share)):
             loud = not loud
             runs += loud
-    if runs < FEWEST_RUNS:
+    if runs < max(FEWEST_RUNS, rows / LONGEST_TURN) or n_noisy.sum() < rows:
+        return False
+    likely = np.add.accumulate(shares[:, None] * free)[-1]
+    spread = np.add.accumulate((shares * (1.0 - shares))[:, None] * free)[-1]
+    apart = (state == 2).sum(axis=0) - likely
+    uneven = float(np.add.accumulate(apart * apart)[-1])
+    if not is_even(uneven, float(np.add.accumulate(spread)[-1]), columns):
         return False
     along = (free[:, 1:] & free[:, :-1]).sum(axis=1)
     across = np.zeros(len(free), np.int64)
@@ -241,17 +253,31 @@ def _is_by_line_plain(state: NDArray[np.uint8], both: int, share: float) -> bool
 def is_by_line(state, both, share):  # type: ignore[no-untyped-def]
     """Do the same in loops."""
     rows, columns = state.shape
-    shares, loud, runs = np.zeros(rows + 1), False, 0
+    shares, loud, runs, n_all = np.zeros(rows + 1), False, 0, 0
     for i in range(rows):
         n_free = n_noisy = 0
         for j in range(columns):
             n_free += state[i, j] > 0
             n_noisy += state[i, j] == 2
         shares[i] = n_noisy / max(n_free, 1)
+        n_all += n_noisy
         if n_free > 0 and loud != (shares[i] > (0.5 * share if loud else share)):
             loud = not loud
             runs += loud
-    if runs < FEWEST_RUNS:
+    if runs < max(FEWEST_RUNS, rows / LONGEST_TURN) or n_all < rows:
+        return False
+    uneven = chance = 0.0
+    for j in range(columns):
+        likely = spread = 0.0
+        n_noisy = 0
+        for i in range(rows):
+            if state[i, j] > 0:
+                likely += shares[i]
+                spread += shares[i] * (1.0 - shares[i])
+                n_noisy += state[i, j] == 2
+        uneven += (n_noisy - likely) ** 2
+        chance += spread
+    if not is_even(uneven, chance, columns):
         return False
     expected = 0.0
     for i in range(rows):
@@ -264,6 +290,12 @@ def is_by_line(state, both, share):  # type: ignore[no-untyped-def]
                 across += i + 1 < rows and state[i + 1, m] > 0
         expected += shares[i] * (along * shares[i] + across * shares[i + 1])
     return are_few(both, expected)
+
+
+@compiled_later
+def is_even(uneven: float, chance: float, n: int) -> bool:
+    """Return whether so much in all is how far ``n`` lines are off what is likely by chance."""
+    return uneven <= 1e-9 + chance * (1.0 + UNEVEN * math.sqrt(2.0 / n))
 
 
 @compiled_later

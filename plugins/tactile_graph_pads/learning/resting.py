@@ -187,8 +187,10 @@ def _touched_frames(values: Array) -> Flags:
     middle = np.median(values, axis=0)
     above = values - middle
     noise = MAD_TO_SIGMA * np.median(np.abs(above), axis=0)
-    # Noise that a device cuts off at 0 is not in the median deviation, but in what rises.
-    rise = float(np.median(np.quantile(above, 0.84, axis=0)))
+    # Noise that a device cuts off at 0 is not in the median deviation, but in what rises, in the
+    # lower half of the frames, too: in others much of the pad may be touched.
+    lower = np.argsort(above.sum(axis=(1, 2)), kind="stable")[: (len(above) + 1) // 2]
+    rise = float(np.median(np.quantile(above[lower], 0.84, axis=0)))
     usual = max(float(np.median(noise)), rise, step_of(values) / np.sqrt(12.0))
     if usual == 0.0:
         usual = 1e-6 * max(float(np.abs(middle).max()), 1e-300)

@@ -109,6 +109,30 @@ def test_a_rod_from_edge_to_edge_is_no_hum(steps: float) -> None:
         assert noise_of(rod) == noise_of(rod.T.copy()) == 0.0
 
 
+def legs(n_twos: int) -> np.ndarray:
+    """Return four feet of 2 x 2 cells that read one step, and in so many corners two."""
+    found = np.zeros((24, 10))
+    for k, (row, column) in enumerate([(6, 2), (6, 6), (13, 2), (13, 6)]):
+        found[row : row + 2, column : column + 2] = 1.0
+        found[row, column] += k < n_twos
+    return found
+
+
+def soles() -> np.ndarray:
+    """Return low loads that reach over all of a narrow pad, in two places."""
+    found = np.zeros((8, 64))
+    for first, last in ((13, 30), (37, 44)):
+        found[:, first:last] = np.random.default_rng(13).integers(0, 3, (8, last - first))
+    return found
+
+
+@pytest.mark.parametrize("loads", [legs(1), legs(3), soles()], ids=["legs", "stool", "soles"])
+def test_loads_of_few_steps_side_by_side_are_no_hum(loads: np.ndarray) -> None:
+    for values in (loads, loads.T.copy()):
+        args = given(values)
+        assert plainly(clipped_noise)(*args) == clipped_noise.reference(*args) == 0.0
+
+
 def test_two_rods_on_a_mat_of_switches_are_no_hum() -> None:
     mat = np.zeros((16, 16))
     mat[2:6] = mat[10:14] = 1.0

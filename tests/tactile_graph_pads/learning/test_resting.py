@@ -148,3 +148,14 @@ def test_what_lies_in_one_place_most_of_the_time_is_not_taken_for_the_empty_pad(
     values[:60, 3:5, 5:8] += 100.0
     with pytest.raises(DataError, match=r"in more than half of the frames.*give it by --empty"):
         resting_among_objects(values, "it")
+
+
+@pytest.mark.parametrize("least", [-np.inf, 0.0])
+@pytest.mark.parametrize("share", [0.2, 0.4])
+@pytest.mark.parametrize("columns", [5, 14])
+def test_what_comes_and_goes_is_no_noise_however_large_it_is(least, share, columns):
+    rng = np.random.default_rng(14)
+    values = rng.normal(0.0, 1.0, (80, 16, 16))
+    values[rng.permutation(80)[: int(80 * share)], :, :columns] += 300.0
+    with pytest.raises(DataError, match=f"not empty: in {int(80 * share)} of 80 frames"):
+        resting(np.maximum(np.round(values), least), "it")

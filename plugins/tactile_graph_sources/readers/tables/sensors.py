@@ -13,6 +13,8 @@ from dataclasses import replace
 from math import isqrt
 from typing import NamedTuple
 
+import numpy as np
+
 from tactile_graph.errors import did_you_mean, one_of
 from tactile_graph_sources.readers.tables.table import Table
 from tactile_graph_sources.readers.words.dialect import unquoted
@@ -38,11 +40,16 @@ _WORDS = {
 _LINE_COLUMNS = {
     "sensor", "sensor_id", "sensorid", "sensor_name", "sensorname", "sensor_no", "device",
     "device_id", "deviceid", "pad", "pad_id", "padid", "side", "foot", "hand", "finger",
-    "location", "capteur", "sensore", "seite", "patch", "patch_id", "patchid", "module",
-    "module_id", "moduleid", "taxel_group", "array", "array_id", "board", "board_id", "finger_id",
-    "hand_id", "foot_id", "insole", "glove",
+    "location", "capteur", "sensore", "seite", "finger_id", "hand_id", "foot_id", "insole", "glove",
 }  # fmt: skip
 """What a column is called that says of each line which sensor it is of."""
+_PARTS = {
+    "patch", "patch_id", "patchid", "module", "module_id", "moduleid", "taxel_group", "array",
+    "array_id", "board", "board_id",
+}  # fmt: skip
+"""The same, or which part of one sensor: what its cells are wired to."""
+FULL = 0.9
+"""Share of a grid's cells that must be there for parts to make it up."""
 _JOINTS = " _-.:/[("
 FEWEST_CELLS, LEAST_SHARE = 6, 0.1
 """Of a sensor: cells, and their number over that of the largest one. Fewer are something else,
@@ -170,7 +177,7 @@ def labels_of_lines(name: str, said: Iterable[str]) -> tuple[str, ...]:
 
     None where it is not called so, or says the same of all, or hardly anything twice.
     """
-    if name.strip().lower() not in _LINE_COLUMNS:
+    if name.strip().lower() not in _LINE_COLUMNS | _PARTS:
         return ()
     counted = Counter(said)
     often = sorted(n for n, times in counted.items() if times > 1)
@@ -196,7 +203,7 @@ def of_one_sensor(table: Table, told: Told) -> tuple[Table, tuple[int, str] | No
     """
     names = table.named.names
     lines = lines_of_sensors(names, table.texts)
-    if lines is not None:
+    if lines is not None and not (not told.sensor and _are_of_one_grid(table, lines[0])):
         column, labels = lines
         if not told.sensor:
             raise NoneNamedError(
@@ -221,6 +228,18 @@ def of_one_sensor(table: Table, told: Told) -> tuple[Table, tuple[int, str] | No
         )
     sensor = chosen(tuple(sensors.columns), told.sensor)
     return replace(table, named=_named_alone(table, sensors, sensor, told)), None
+
+
+def _are_of_one_grid(table: Table, column: int) -> bool:
+    """Return whether a column names parts of one grid, which fill it and share no cell."""
+    named = table.named
+    if not named.is_long or named.names[column].strip().lower() not in _PARTS:
+        return False
+    row, across = (table.rows[:, named.roles[role]] for role in ("row", "column"))
+    cells = set(zip(row.tolist(), across.tolist(), strict=True))
+    parts = {(*cell, text[column]) for *cell, text in zip(row, across, table.texts, strict=True)}
+    n_grid = len(np.unique(row)) * len(np.unique(across))
+    return len(parts) == len(cells) >= FULL * n_grid
 
 
 def _named_alone(table: Table, sensors: Sensors, sensor: str, told: Told) -> Named:

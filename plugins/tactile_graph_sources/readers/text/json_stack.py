@@ -283,7 +283,9 @@ def entries_of(where: str, content: Any, sensor: str | None = None) -> Entries:
 
 def _of_one_sensor(where: str, objects: list[dict[str, Any]], sensor: str) -> list[dict[str, Any]]:
     """Return the frames of the one sensor that is asked for, where they say whose they are."""
-    for key in objects[0]:
+    for key, first in objects[0].items():
+        if isinstance(first, list):
+            continue
         said = [str(e.get(key)) for e in objects]
         labels = labels_of_lines(key.rpartition(".")[2], said)
         if labels and not sensor:

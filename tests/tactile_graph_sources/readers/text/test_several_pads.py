@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -56,3 +58,28 @@ def test_cells_that_come_again_now_and_then_are_damage(tmp_path: Path) -> None:
     frames, report = frames_of(path)
     assert len(frames) == 6
     assert report.counts["repeated cells dropped"] == 1
+
+
+@pytest.mark.parametrize("header", ["row,col", "y_mm,x_mm"])
+@pytest.mark.parametrize("part", [lambda r, c: 2 * (r // 4) + c // 3, lambda r, c: c % 2])
+def test_parts_of_one_grid_are_read_as_one_unless_one_is_asked_for(
+    header: str, part: Callable[[int, int], int], tmp_path: Path
+) -> None:
+    values = np.arange(144.0).reshape(3, 8, 6)
+    lines = [f"{k},{part(r, c)},{5 * r},{5 * c},{v}" for (k, r, c), v in np.ndenumerate(values)]
+    if header == "row,col":
+        lines = [f"{k},{part(r, c)},{r},{c},{v}" for (k, r, c), v in np.ndenumerate(values)]
+    path = write(tmp_path, "\n".join([f"frame,module,{header},value", *lines]))
+    frames, report = frames_of(path)
+    np.testing.assert_array_equal([f.image.values for f in frames], values)
+    assert report.counts["recordings with columns left out (module)"] == 1
+    alone = frames_of(path, sensor="1")[0][0].image
+    n_alone = alone.values.size if alone.valid is None else np.count_nonzero(alone.valid)
+    assert n_alone == sum(part(r, c) == 1 for r, c in np.ndindex(8, 6))
+
+
+@pytest.mark.parametrize("key", ["array", "patch", "values"])
+def test_readings_that_come_again_name_no_sensors(key: str, tmp_path: Path) -> None:
+    film = [{"t": k, key: [[k % 2, 5], [7, 9]]} for k in range(6)]
+    frames, _ = frames_of(write(tmp_path, json.dumps(film), "film.json"))
+    assert [f.image.values[0, 0] for f in frames] == [0, 1, 0, 1, 0, 1]
