@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -43,6 +43,12 @@ from tactile_graph_likelihood.any_pad.posterior import (
     stretched,
     within,
 )
+from tactile_graph_likelihood.any_pad.pressure_chances import (
+    FOAM,
+    log_chances,
+    on_foam,
+    shared_by,
+)
 from tactile_graph_likelihood.any_pad.second_climbs import (
     among_strays,
     around_clump,
@@ -66,8 +72,6 @@ from tactile_graph_likelihood.single.any_pressure import (
     WIDER,
     Pattern,
     asked_by,
-    chances,
-    log_of,
     mixed,
 )
 from tactile_graph_likelihood.single.changed import changed
@@ -99,8 +103,6 @@ UNSUREST = 2.3
 
 SHARPER = 0.6
 """As `FAINT`, the fall of a rectangle: its own shape tells more of that."""
-
-FOAM = "foam"
 
 MANY = 8.0
 """Times what is told of strays from which on an outline is searched for anew, knowing of them."""
@@ -524,29 +526,3 @@ class AnyPad:
 def _first(top: Likeliest, count: int) -> Mode:
     """Return the first numbers of a top, the others known."""
     return Mode(top.mode.p[:count].copy(), top.mode.root[:count, :count].copy(), top.mode.height)
-
-
-def on_foam(pressures: Mapping[str, float]) -> dict[str, float]:
-    """Return how likely each pressure is, where an even face's readings had foam undone."""
-    found = {part: chance for part, chance in pressures.items() if part != EVEN}
-    return {FOAM: pressures.get(EVEN, 0.0) + found.pop(FOAM, 0.0), **found}
-
-
-def shared_by(tops: Iterable[Likeliest], touched: int) -> float:
-    """Return by how much elements count for less, since neighbours hang together in any fit."""
-    return min(variance_inflation(top.fit.neighbours, touched) for top in tops)
-
-
-def log_chances(
-    tops: Mapping[str, Likeliest], shared: float, touched: int, foam_odds: float = FOAM_ODDS
-) -> dict[str, float]:
-    """Return the log probability of each pressure with its fit, up to a constant.
-
-    Evidence takes elements for independent; it is worth as many times less as they are ``shared``.
-    ``foam_odds`` as in `chances`.
-    """
-    before = {EVEN: 1.0}
-    if len(tops) > 1:
-        others = {part: top.fit for part, top in tops.items() if part != EVEN}
-        before = chances(others, touched, foam_odds)
-    return {part: top.evidence / shared + log_of(before[part]) for part, top in tops.items()}
