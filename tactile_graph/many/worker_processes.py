@@ -9,7 +9,6 @@ when its process is.
 from __future__ import annotations
 
 import pickle
-import signal
 import threading
 import traceback
 from collections.abc import Callable
@@ -220,6 +219,8 @@ class _Line:
 
     def _died(self, error: Exception) -> DeadWorkerError:
         """Return what is said of a process whose pipe is at its end."""
+        from tactile_graph.engine.calls.isolated import how_ended
+
         self.close()
         code = None
         if self._process is not None:
@@ -227,8 +228,7 @@ class _Line:
             self._process.join()
             code = self._process.exitcode
             self._process = None
-        how = f"by {signal.Signals(-code).name}" if code and code < 0 else f"with code {code}"
-        died = DeadWorkerError(f"a worker ended {how}: {error}".removesuffix(": "))
+        died = DeadWorkerError(f"a worker ended {how_ended(code)}: {error}".removesuffix(": "))
         died.__cause__ = error
         return died
 

@@ -204,6 +204,7 @@ class Bench:
         if now >= self._next_summary_ns:
             self._summarise("running")
         self._between()
+        self._tally.through(time.perf_counter_ns())
 
     def _looking(self, live: Live) -> Photographer:
         """Return the photographer of the pipeline that gave the result."""
@@ -403,8 +404,8 @@ class _Tally:
     """Counts frames, and keeps their latencies until they are asked for.
 
     What was shed before the pipeline was ready counts as the time it took to get so, and not as
-    lost to load. It is ready with the first frame that came after one was answered, and was
-    answered without plain code, which stands in while the compiler works.
+    lost to load. It is ready with the first frame that came after one was answered, drawn and told,
+    and was answered without plain code, which stands in while the compiler works.
     """
 
     def __init__(self) -> None:
@@ -417,7 +418,7 @@ class _Tally:
     def begin(self) -> None:
         """Count on in a new run, whose own counts begin at 0."""
         self.ready, self._shed_in_run, self._lost_in_run = False, 0, 0
-        self._first_done_ns, self._plain_s = inf, 0.0
+        self._first_through_ns, self._plain_s = inf, 0.0
 
     def add(self, live: Live, plain_s: float, deadline_us: float | None) -> None:
         """Count a frame, ``plain_s`` being what plain code has taken in this run so far."""
@@ -426,20 +427,23 @@ class _Tally:
         self.n_lost += live.lost - self._lost_in_run
         self._lost_in_run = live.lost
         self.n_frames += 1
+        before = not self.ready
+        self.n_shed_before += new * before  # those shed before this one came earlier than it
+        self.n_shed += new * (not before)
         self.ready = self.ready or self._gets_ready(live, plain_s)
         if not self.ready:
-            self.n_shed_before += new
             return
-        self.n_shed += new
         latency_us = live.latency_us
         self._latencies.append(latency_us)
         self.n_missed += deadline_us is not None and latency_us > deadline_us
 
     def _gets_ready(self, live: Live, plain_s: float) -> bool:
         by_plain, self._plain_s = plain_s > self._plain_s, plain_s
-        came_later = live.arrived_ns >= self._first_done_ns
-        self._first_done_ns = min(self._first_done_ns, live.done_ns)
-        return came_later and not by_plain
+        return live.arrived_ns >= self._first_through_ns and not by_plain
+
+    def through(self, now_ns: int) -> None:
+        """Note that all is done that a frame asks for; a first picture takes long."""
+        self._first_through_ns = min(self._first_through_ns, now_ns)
 
     def taken(self) -> NDArray[np.float32]:
         """Return the latencies since they were taken last, in microseconds."""

@@ -278,10 +278,17 @@ class Process:
 
     def end_in_words(self) -> str:
         """Return how it ended."""
-        code = self._process.wait()
-        if code < 0:
-            return f"ended its process by {signal.Signals(-code).name}"
-        return f"ended its process with code {code}"
+        return f"ended its process {how_ended(self._process.wait())}"
+
+
+def how_ended(code: int | None) -> str:
+    """Return how a process ended, by the code that it left: ``by SIGKILL``, ``with code 3``."""
+    if code is None or code >= 0:
+        return f"with code {code}"
+    try:
+        return f"by {signal.Signals(-code).name}"
+    except ValueError:  # most real-time signals have no name
+        return f"by signal {-code}"
 
 
 def _listen(stdout: IO[bytes], messages: Queue[Message]) -> None:

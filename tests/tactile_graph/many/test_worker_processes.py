@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import tempfile
@@ -66,6 +67,15 @@ def test_one_that_dies_over_half_an_answer_is_told_and_another_is_started(
     assert all(future.result(PATIENCE_S) for future in rest)
     at = [workers.submit(slowly, 0.2) for _ in range(4)]
     assert len({future.result(PATIENCE_S) for future in at}) == 2
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGRTMIN"), reason="real-time signals")
+def test_one_that_a_signal_without_a_name_ends_is_told_with_its_number(
+    workers: WorkerProcesses,
+) -> None:
+    dead = workers.submit(signal.raise_signal, signal.SIGRTMIN + 3)
+    with pytest.raises(DeadWorkerError, match="a worker ended by signal"):
+        dead.result(PATIENCE_S)
 
 
 def test_one_that_dies_is_told_with_its_code(workers: WorkerProcesses) -> None:

@@ -20,6 +20,7 @@ import helpers_isolated_kernels as kernel_steps
 from helpers_graphs import STEPS, frame, registry
 from tactile_graph import Image, Pipeline, hookimpl, loads
 from tactile_graph.compiled import mode
+from tactile_graph.engine.calls.isolated import how_ended
 from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.pipeline.graph import Isolation
@@ -428,3 +429,10 @@ time.sleep(0.2)
 print(worker.pid, flush=True)
 os._exit(0)
 """
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGRTMIN"), reason="real-time signals")
+def test_a_signal_without_a_name_is_told_by_its_number() -> None:
+    assert how_ended(-signal.SIGKILL) == "by SIGKILL"
+    assert how_ended(-(signal.SIGRTMIN + 3)) == f"by signal {signal.SIGRTMIN + 3}"
+    assert (how_ended(3), how_ended(None)) == ("with code 3", "with code None")
