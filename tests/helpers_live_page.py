@@ -67,9 +67,11 @@ def graph(version: int = 1, names: tuple[str, ...] = NAMES, **more: Any) -> Plai
             "took_ms": 1.0, "anew": []} | more  # fmt: skip
 
 
-def picture(values: list[int] | bytes, readings: list[float] | None = None, **more: Any) -> Plain:
+def picture(
+    values: list[int] | bytes, readings: list[float] | None = None, kind: str = "<f8", **more: Any
+) -> Plain:
     """Return cells as the page gets them: by their colours, and what they read if that is given."""
-    exact = None if readings is None else np.array(readings, "<f8").tobytes()
+    exact = None if readings is None else np.array(readings, kind).tobytes()
     return {"rows": ROWS, "columns": COLUMNS, "pitch_cm": [PITCH_CM, PITCH_CM],
             "origin_cm": [0.0, 0.0], "quantity": "volt", "unit": "V", "low": 0.0, "high": 3.0,
             "values": b64encode(bytes(values)).decode(),

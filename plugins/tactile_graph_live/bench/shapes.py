@@ -30,6 +30,9 @@ NO_READING = 255
 HIGHEST = 254
 MOST_EXACT = 4096
 """Cells of the largest pad whose readings go along exactly, beside their colours."""
+SEVEN_DIGITS = 1e7
+"""Size below which a number of float32 has its whole digits right."""
+LEAST_FLOAT32 = 1e-37
 LONGEST_NOTE = 200
 MOST_PLACES = 4000
 """Corners or points of one shape, at most: a page is no place for more."""
@@ -57,14 +60,20 @@ def picture(image: Image, low: float | None = None, high: float | None = None) -
 
 
 def readings(image: Image) -> str | None:
-    """Return what each cell reads: base64 of float64, least byte first; None for a large pad.
+    """Return what each cell reads: base64 of numbers, least byte first; None for a large pad.
 
-    It is NaN where there is no reading.
+    They are NaN where there is no reading; float32 where seven digits tell each, otherwise float64.
     """
     values, good = _values(image)
     if values.size > MOST_EXACT:
         return None
-    return b64encode(np.where(good, values, np.nan).astype("<f8").tobytes()).decode()
+    values = np.where(good, values, np.nan)
+    size = np.abs(values)
+    told = (
+        np.fmax.reduce(size, axis=None, initial=0.0) < SEVEN_DIGITS
+        and not ((size > 0.0) & (size < LEAST_FLOAT32)).any()
+    )
+    return b64encode(values.astype("<f4" if told else "<f8").tobytes()).decode()
 
 
 def _values(image: Image) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:

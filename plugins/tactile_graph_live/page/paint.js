@@ -50,7 +50,10 @@ export function valueAt(grid, row, column) {
   const cell = row * grid.columns + column;
   const level = levelsOf(grid)[cell];
   if (level === undefined || level === BROKEN) return null;
-  if (isExact(grid)) return readingsOf(grid)[cell];
+  if (isExact(grid)) {
+    const exact = readingsOf(grid);
+    return exact instanceof Float32Array ? Number(exact[cell].toPrecision(7)) : exact[cell];
+  }
   const step = (grid.high - grid.low) / 254;
   const fine = 10 ** Math.floor(Math.log10(step || 1));
   return Number((Math.round((grid.low + level * step) / fine) * fine).toPrecision(10));
@@ -59,7 +62,8 @@ export function valueAt(grid, row, column) {
 function readingsOf(grid) {
   if (grid.exact === undefined) {
     const bytes = Uint8Array.from(atob(grid.readings), (c) => c.charCodeAt(0));
-    grid.exact = new Float64Array(bytes.buffer);
+    const one = bytes.length === 4 * grid.rows * grid.columns ? Float32Array : Float64Array;
+    grid.exact = new one(bytes.buffer);
   }
   return grid.exact;
 }

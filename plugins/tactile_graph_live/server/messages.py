@@ -177,7 +177,8 @@ class Frame:
         A `picture` of the frame's image: rows, columns, pitch_cm (x, y), origin_cm (x, y),
         quantity, unit, low, high, ``values``: base64 of rows times columns bytes, row by row, 0 for
         low up to 254 for high, 255 where there is no reading, ``readings``: base64 of what each
-        cell reads, float64, least byte first, NaN without a reading; null for a large pad.
+        cell reads, least byte first, NaN without a reading: float32 where seven digits tell it (4
+        bytes a cell), otherwise float64; null for a large pad.
     drawing : sequence of mapping
         What the outputs draw over the pad and, where it is known, the truth: each with ``shape``,
         ``role`` (found or true), ``node``, places in cm. ``circle``: x, y, radius; ``polygon``

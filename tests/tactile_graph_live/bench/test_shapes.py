@@ -6,6 +6,7 @@ import json
 from base64 import b64decode
 
 import numpy as np
+import pytest
 
 from tactile_graph import Circle, Image, Mask, Points, Polygon
 from tactile_graph.draw.display import Area, Label, display_list
@@ -36,6 +37,18 @@ def test_readings_go_to_their_last_digit_whatever_the_range_of_colours() -> None
     assert told is not None
     expected = np.array([0.0, -37.0, 0.0042, 1e9 + 1.0, np.nan, np.nan])
     np.testing.assert_array_equal(np.frombuffer(b64decode(told), "<f8"), expected)
+
+
+@pytest.mark.parametrize(
+    ("values", "size"),
+    [([0.0, -37.0, 0.0042], 4), ([0.0, 9999999.0, 4095.0], 4), ([0.0, 1e7, 1.0], 8),
+     ([1e-40, 0.0, 1.0], 8), ([np.nan, 1.0, 2.0], 4), ([], 4)],
+)  # fmt: skip
+def test_readings_take_no_more_room_than_seven_digits_need(values: list[float], size: int) -> None:
+    told = readings(Image(np.array([values])))
+    assert told is not None
+    found = np.frombuffer(b64decode(told), f"<f{size}")
+    np.testing.assert_allclose(found, values, rtol=1e-7)
 
 
 def test_a_large_pad_goes_by_its_colours_alone() -> None:

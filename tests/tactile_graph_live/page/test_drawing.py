@@ -91,12 +91,14 @@ def test_pointing_tells_the_cell(page: Any, double: Double) -> None:
     assert page.locator("#readout").inner_text() == "Row 2, column 3: about 1.5 V, at 4.5, 3.3 cm"
 
 
+@pytest.mark.parametrize("kind", ["<f8", "<f4"])
 def test_a_cell_reads_what_it_reads_however_far_the_colours_reach(
-    page: Any, double: Double
+    page: Any, double: Double, kind: str
 ) -> None:
     cells = [0.0] * (ROWS * COLUMNS)
     cells[23], cells[24], cells[25], cells[26] = 100.0, 0.0042, math.nan, 2345.6
-    told = picture([*[1] * 25, 255, *[1] * (ROWS * COLUMNS - 26)], cells, low=-1137.0, high=1e6)
+    colours = [*[1] * 25, 255, *[1] * (ROWS * COLUMNS - 26)]
+    told = picture(colours, cells, kind, low=-1137.0, high=1e6)
     shown(page, double, pad=told, drawing=[])
     read = []
     for column in range(3, 8):
