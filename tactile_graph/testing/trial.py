@@ -27,6 +27,8 @@ TIMES = 30.0
 """How many times the time of an ordinary frame any other of its size may take."""
 IDLE = 10.0
 """How many times its seconds of the processor a step may take by the clock: the rest is others'."""
+TOLD_S = 1.0
+"""Seconds by the clock from which on they are told: below, a busy machine may take them."""
 WAITS_S = 20.0
 """How long a step may wait by the clock while it takes less than its share of the processor."""
 LONGEST_LINE = 400
@@ -72,9 +74,8 @@ class Trial:
     def trouble(self) -> str:
         """Return what is wrong with how the call ended, in words; "" where nothing is."""
         if self.late:
-            waited = (
-                f", {self.clock_s:.0f} s by the clock" if self.clock_s > 2 * self.seconds else ""
-            )
+            long = self.clock_s > max(2.0 * self.seconds, TOLD_S)
+            waited = f", {self.clock_s:.0f} s by the clock" if long else ""
             return f"was stopped after {self.seconds:.1f} s of the processor{waited}"
         if self.error is None:
             return ""

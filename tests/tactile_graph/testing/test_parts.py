@@ -147,8 +147,9 @@ def test_a_call_that_takes_too_long_is_stopped() -> None:
     assert "was stopped after" in trial.trouble()
 
 
+@pytest.mark.slow
 def test_a_call_that_only_waits_is_stopped_by_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(trials, "WAITS_S", 0.1)
+    monkeypatch.setattr(trials, "WAITS_S", 1.2)
     found = attempt(lambda: time.sleep(60.0), {}, 60.0)
     assert found.late
     assert re.fullmatch(
