@@ -117,14 +117,13 @@ def contrast_of(told: Noise, log_sigma: float, readings: Readings, law: float = 
         return AS_LOADS
     other = math.log(_freed(log_sigma, readings.touched) / told.sigma)
     turn_on = readings.turn_on
-    law *= 1.0 - chance_of_an_even_pad(other, readings.touched)
     if turn_on is None and other < 0.0:
-        share = law / LAW * LAWLESS
+        share = LAWLESS * (1.0 - chance_of_an_even_pad(other, readings.touched))
         return Contrast(1.0 + share * other, math.hypot(SPREADS[CONTRAST], LAWLESS_STD * other))
     begin = readings.through_foam or readings
     if (edge := edge_of(begin)) is not None:
         return Contrast(contrast_by(other, edge, readings.touched))
-    unseen = 1.0 + law * other
+    unseen = 1.0 + law * (1.0 - chance_of_an_even_pad(other, readings.touched)) * other
     if turn_on is None or turn_on.chance >= 1.0:
         return Contrast(unseen)
     if (edge := edge_of(straightened(begin, 1.0))) is None:

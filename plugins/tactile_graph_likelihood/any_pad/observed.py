@@ -12,7 +12,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid, require_square
 from tactile_graph.wires import Image
 from tactile_graph_filters.readings.dead_below import without_dead
-from tactile_graph_likelihood.any_pad.above_noise import EVERY, risen
+from tactile_graph_likelihood.any_pad.above_noise import EVERY, SHOWS, risen
 from tactile_graph_likelihood.any_pad.learned_pad import LAWFUL
 from tactile_graph_likelihood.any_pad.shown import (
     LEAST,
@@ -34,9 +34,6 @@ SAME = 0.02
 UNSCALED, UNSCALED_STD = ("counts", "raw"), 0.05
 """Quantities that no scale is told of, and how uncertain that leaves an outline's lengths, over the
 pitch: where a circuit bends readings at their least, the rim shows too little."""
-
-SHOWN = 4.0
-"""Deviations of the noise from which on a reading shows."""
 
 GAP, GAP_STD, TOLD_GAP_STD = 0.12, 0.12, 0.08
 """Of a pitch: what is believed of the gap of elements that nothing is told of, how far it may be
@@ -133,7 +130,7 @@ def observed(
     if ceiling < math.inf:
         unheld = logs.copy()
         unheld[found.shows] = logs_seen
-        found = found._replace(unheld=unheld, noise=float(np.median(least_loads)) / SHOWN)
+        found = found._replace(unheld=unheld, noise=float(np.median(least_loads)) / SHOWS)
     unsure_cm = UNSCALED_STD * float(grid[2]) if image.quantity in UNSCALED else 0.0
     return found._replace(gap=gap, length_std_cm=unsure_cm)
 
