@@ -22,7 +22,7 @@ holds much of a face, few of them do."""
 WHOLE, LITTLE = 0.97, 0.1
 """Covered share from which on an element is of the face, and from which on it is under the rim."""
 
-MOST_VOIDS = 1.0
+MOST_VOIDS = 0.05
 """Share of the elements of an even pad's face that read nothing."""
 
 FEWEST = 4
