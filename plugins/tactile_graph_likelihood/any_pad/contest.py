@@ -67,7 +67,7 @@ def tops_of_each(
                 its, readings, even = any_pad.first(readings)
                 tops[name] = its.completed(readings, even)
             elif _may_win(any_pad, found[name], best, readings.touched):
-                tops[name] = any_pad.completed(readings, found[name])
+                tops[name] = any_pad.completed(readings, found[name], alone=False)
             else:
                 tops[name] = {EVEN: found[name]}
         except Degenerate as why:
@@ -96,6 +96,9 @@ def _first_look(
         every = {name: any_pad.knowing(strays) for name, any_pad in every.items()}
         lead = lead if knows else every[first].again(readings, lead)
     readings, lead = every[first].cleared(readings, lead)
+    its, readings, lead = every[first].on_told_foam(readings, lead)
+    if its is not every[first]:
+        every = {name: any_pad.told_of_foam for name, any_pad in every.items()}
     found, is_disc = {first: lead}, every[first].told.kind == DISC and lead.fit.surprise > POOR
     for name, any_pad in every.items():
         if name == first:
@@ -106,7 +109,24 @@ def _first_look(
         if (its.unsure or not grown) and _may_win(any_pad, its, best, readings.touched):
             its = any_pad.searched(readings, its)
         found[name] = its
-    return readings, every, found
+    return readings, *_knowing_as_many(every, readings, found)
+
+
+def _knowing_as_many(
+    every: Mapping[str, AnyPad], readings: Readings, found: dict[str, Likeliest]
+) -> tuple[Mapping[str, AnyPad], dict[str, Likeliest]]:
+    """Return fits that all know of the strays that the likeliest kind leaves, and what they find.
+
+    Those given, if none of what they find is likelier for it.
+    """
+    first = max(found, key=lambda name: found[name].evidence)
+    strays = every[first].strays(readings, found[first])
+    if not strays:
+        return every, found
+    knowing = {name: any_pad.knowing(strays) for name, any_pad in every.items()}
+    again = {name: its.again(readings, found[name]) for name, its in knowing.items()}
+    best = max(its.evidence for its in again.values())
+    return (knowing, again) if best > found[first].evidence else (every, found)
 
 
 def _may_win(any_pad: AnyPad, its: Likeliest, best: Likeliest, touched: int) -> bool:

@@ -176,8 +176,7 @@ class AnyPad:
 
     @cached_property
     def _on_large_pads(self) -> AnyPad:
-        noise = changed(self.told.noise, foam_cm=self.foam_cm)
-        return changed(self, told=changed(self.told, noise=noise), quick=False, foam_cm=0.0)
+        return changed(self.told_of_foam, quick=False)
 
     def suited(self, readings: Readings) -> AnyPad:
         """Return these fits, or those for pads of more than 1024 elements.
@@ -221,7 +220,27 @@ class AnyPad:
         With the fits that found it; see `begun` and `cleared`.
         """
         its, even = self.begun(readings)
-        return its, *its.cleared(readings, even)
+        return its.on_told_foam(*its.cleared(readings, even))
+
+    def on_told_foam(
+        self, readings: Readings, even: Likeliest
+    ) -> tuple[AnyPad, Readings, Likeliest]:
+        """Return fits that know of the foam that is told, where it is likelier and was not undone.
+
+        Then elements have gains of their own under it.
+        """
+        its = self.told_of_foam
+        if its is self or readings.through_foam is not None:
+            return self, readings, even
+        other = its.near(readings, self.told.point_of(even))
+        return (its, readings, other) if other.evidence > even.evidence else (self, readings, even)
+
+    @cached_property
+    def told_of_foam(self) -> AnyPad:
+        if self.foam_cm <= 0.0:
+            return self
+        noise = changed(self.told.noise, foam_cm=self.foam_cm)
+        return changed(self, told=changed(self.told, noise=noise), foam_cm=0.0)
 
     def begun(self, readings: Readings) -> tuple[AnyPad, Likeliest]:
         """Return the even face's most likely outline by one attempt, and the fits that found it.
@@ -309,6 +328,14 @@ class AnyPad:
         """Return fits that are told of so many strays."""
         return changed(self, told=changed(self.told, noise=changed(self.told.noise, strays=strays)))
 
+    def likelier_with(
+        self, strays: float, readings: Readings, even: Likeliest
+    ) -> tuple[AnyPad, Likeliest]:
+        """Return fits that are told of so many strays and their outline, or these if likelier."""
+        knowing = self.knowing(strays)
+        other = knowing.again(readings, even)
+        return (knowing, other) if other.evidence > even.evidence else (self, even)
+
     def again(self, readings: Readings, even: Likeliest) -> Likeliest:
         """Return what is likelier, near an outline and elsewhere, now that strays are known."""
         near, model = self.near(readings, self.told.point_of(even)), self._fit(EVEN)
@@ -318,8 +345,17 @@ class AnyPad:
         found = model.likeliest(readings, near, attempts=MORE)
         return found if large else among_strays(model, readings, found)
 
-    def completed(self, readings: Readings, even: Likeliest) -> dict[str, Likeliest]:
+    def completed(
+        self, readings: Readings, even: Likeliest, alone: bool = True
+    ) -> dict[str, Likeliest]:
         """Return the most likely outlines by pressure, once one attempt found one of an even face.
+
+        Parameters
+        ----------
+        readings : Readings
+        even : Likeliest
+        alone : bool
+            Whether no other kind of outline is compared, which would have to know of as many strays.
 
         Raises
         ------
@@ -334,17 +370,14 @@ class AnyPad:
         if even.mode.height == -math.inf:
             raise self.told.impossible(readings)
         its = self
-        if strays := self.strays(readings, even):
-            its = self.knowing(strays)
-            even = its.again(readings, even)
+        if alone and (strays := self.strays(readings, even)):
+            its, even = self.likelier_with(strays, readings, even)
         elif large and even.unsure:
             even = model.likeliest(readings, even, attempts=MORE)
         if not large:
             even = beyond_the_edge(its._fit(EVEN), readings, even)
         found = {EVEN: even}
         asked = [] if large else asked_by([even.fit], FIRST, CLEAR if self.quick else self._faint)
-        if FOAM in asked and readings.through_foam is None and has_no_foam(readings):
-            asked.remove(FOAM)
         hidden = bool(asked) and self._reaches_beyond(readings, even)
         for part in asked:
             if hidden and part != FOAM:
@@ -378,7 +411,7 @@ class AnyPad:
         """Return the posterior around the most likely outlines, over all pressures."""
         # A pressure is told by all of a face: elements count for as much less along both axes.
         shared = shared_by(tops.values(), readings.touched) ** 2
-        odds = FOAM_ODDS * self._foam_by_scatter(tops, readings.touched)
+        odds = FOAM_ODDS * self._foam_by_scatter(tops, readings)
         logs = log_chances(tops, shared, readings.touched, odds)
         best = max(logs, key=logs.__getitem__)
         shares = {part: math.exp(log - logs[best]) for part, log in logs.items()}
@@ -407,13 +440,15 @@ class AnyPad:
         whole = resized(whole, UNSEEN * unseen_share(tops[EVEN].fit.fall))
         return whole if self._reaches_beyond(readings, tops[best]) else evenly_spread(whole)
 
-    def _foam_by_scatter(self, tops: Mapping[str, Likeliest], touched: int) -> float:
+    def _foam_by_scatter(self, tops: Mapping[str, Likeliest], readings: Readings) -> float:
         """Return by how much readings' scatter makes foam more probable than a round face."""
         if "fall" not in tops or FOAM not in tops:
             return 1.0
+        if readings.through_foam is None and has_no_foam(readings):
+            return 0.0
         told = math.log(self.told.noise.sigma)
         by_foam, by_face = (float(tops[part].mode.p[-2]) - told for part in (FOAM, "fall"))
-        return evened_by_foam(by_foam, by_face, touched)
+        return evened_by_foam(by_foam, by_face, readings.touched)
 
     def _wider(self, part: str) -> float:
         """Return by how much the variance under a pressure is larger than that of its fit."""

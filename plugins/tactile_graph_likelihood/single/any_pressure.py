@@ -36,6 +36,10 @@ SHARED_BY = 80
 """Touched elements from which on it is so; among fewer are fewer neighbours."""
 
 
+LARGEST = 700.0
+"""Of log odds."""
+
+
 class Pattern(NamedTuple):
     """What an even face leaves over, in standard deviations, as in `GoodnessOfFit`."""
 
@@ -153,6 +157,7 @@ def chances(
     others: Mapping[str, Posterior | GoodnessOfFit | None],
     touched: int = SHARED_BY,
     foam_odds: float = FOAM_ODDS,
+    own_odds: float = 0.0,
 ) -> dict[str, float]:
     """Return the probability of each pressure before the loads' evidence is heard.
 
@@ -164,16 +169,19 @@ def chances(
     touched : int
         Elements that read a load.
     foam_odds : float
-        Of foam over a round face, before neighbours are looked at.
+        Of foam that shares elements' gains over a round face, before neighbours are looked at.
+    own_odds : float
+        Of foam under which elements keep their own gains, over a round face.
     """
     found = {"lean": LEAN} if "lean" in others else {}
     if "fall" in others and "foam" in others:
-        log_odds = math.log(foam_odds)
+        log_odds = log_of(foam_odds)
         if (fall := others["fall"]) is not None:
             log_odds += 0.5 * fall.neighbours**2
             shared = SHARED * math.sqrt(min(touched / SHARED_BY, 1.0))
             log_odds -= 0.5 * ((fall.neighbours - shared) / SPREAD) ** 2 + math.log(SPREAD)
-        foam = 1.0 / (1.0 + math.exp(-min(max(log_odds, -700.0), 700.0)))
+        odds = math.exp(min(log_odds, LARGEST)) + own_odds
+        foam = odds / (1.0 + odds)
         found |= {"fall": ROUND * (1.0 - foam), "foam": ROUND * foam}
     else:
         found |= {part: ROUND for part in ("fall", "foam") if part in others}
