@@ -127,4 +127,4 @@ def probabilities(
         name: float(np.logaddexp.reduce(list(log_chances(its, shared, readings.touched).values())))
         for name, its in tops.items()
     }
-    return shares_by(logs)
+    return shares_by(logs, readings.touched)

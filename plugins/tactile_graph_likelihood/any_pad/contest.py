@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-import numpy as np
-
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.from_frame import variance_inflation
 from tactile_graph_likelihood.any_pad.localise import AnyPad
-from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, Values
+from tactile_graph_likelihood.geometry.outlines import (
+    DISC,
+    ELLIPSE,
+    RECTANGLE,
+    as_ellipse_of_disc,
+)
 from tactile_graph_likelihood.single.any_pressure import EVEN
 from tactile_graph_likelihood.single.model import Likeliest
 from tactile_graph_likelihood.single.problem import LARGE_PAD
@@ -104,7 +107,7 @@ def _first_look(
         if name == first:
             continue
         grown = is_disc and any_pad.told.kind == ELLIPSE
-        its = any_pad.near(readings, _as_ellipse(lead.mode.p) if grown else None)
+        its = any_pad.near(readings, as_ellipse_of_disc(lead.mode.p) if grown else None)
         best = max(found.values(), key=lambda one: one.evidence)
         if (its.unsure or not grown) and _may_win(any_pad, its, best, readings.touched):
             its = any_pad.searched(readings, its)
@@ -145,8 +148,3 @@ def _is_round(readings: Readings) -> bool:
     _, _, _, xx, xy, yy, _ = moments.call(readings.grid, readings.logs, readings.states).tolist()
     middle, off = 0.5 * (xx + yy), math.hypot(0.5 * (xx - yy), xy)
     return bool(middle - off >= ROUND * (middle + off))
-
-
-def _as_ellipse(disc: Values) -> Values:
-    """Return the numbers of an ellipse that is a disc, and what follows them."""
-    return np.concatenate([disc[:3], disc[2:3], [0.0], disc[3:]])

@@ -237,6 +237,7 @@ class AnyPad:
 
     @cached_property
     def told_of_foam(self) -> AnyPad:
+        """The same fits, which know of the foam that is told."""
         if self.foam_cm <= 0.0:
             return self
         noise = changed(self.told.noise, foam_cm=self.foam_cm)
@@ -355,7 +356,7 @@ class AnyPad:
         readings : Readings
         even : Likeliest
         alone : bool
-            Whether no other kind of outline is compared, which would have to know of as many strays.
+            Whether no other kind is compared with, which would have to know of as many strays.
 
         Raises
         ------

@@ -138,3 +138,8 @@ def ordered(p: Values) -> tuple[float, float, float]:
         first, second, angle = second, first, angle + 0.5 * math.pi
     angle = math.remainder(angle, math.pi)
     return first, second, angle if angle > -0.5 * math.pi else 0.5 * math.pi
+
+
+def as_ellipse_of_disc(disc: Values) -> Values:
+    """Return the numbers of an ellipse that is a disc, and what follows them."""
+    return np.concatenate([disc[:3], disc[2:3], [0.0], disc[3:]])

@@ -103,7 +103,8 @@ class ChooseShape:
         for name in dict.fromkeys(names):
             its = [log for log, owner in zip(logs, names, strict=True) if owner == name]
             evidence[name] = log_mean(its, len(its))
-        shares = dict.fromkeys(Chosen._fields[3:], 0.0) | shares_by(evidence)
+        shares = shares_by(evidence, fits.readings.touched)
+        shares = dict.fromkeys(Chosen._fields[3:], 0.0) | shares
         seen = {k for k, _ in fits.found}
         best = max(dict.fromkeys(names[k] for k in sorted(seen)), key=lambda name: evidence[name])
         shape = max((k for k in sorted(seen) if names[k] == best), key=logs.__getitem__)

@@ -8,7 +8,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from tactile_graph.errors import Degenerate
-from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.geometry.outlines import (
+    DISC,
+    ELLIPSE,
+    Values,
+    as_ellipse_of_disc,
+)
 from tactile_graph_likelihood.single.any_pressure import (
     EVEN,
     AnyPressure,
@@ -65,7 +70,20 @@ class FrameFits:
         for k, outline in enumerate(self.outlines):
             if tops[k].unsure and tops[k].evidence > likeliest - HOPELESS:
                 tops[k] = outline.even.likeliest(self.readings, tops[k], attempts=MORE)
+            if outline.even.kind == ELLIPSE and tops[k].mode.height == -math.inf:
+                tops[k] = self._as_round(outline.even, tops)
             self._add((k, EVEN), outline.even, tops[k])
+
+    def _as_round(self, ellipse: Model, tops: Sequence[Likeliest]) -> Likeliest:
+        """Return the most likely ellipse near a disc, where moments of few elements gave none."""
+        nowhere = next(top for top in tops if top.mode.height == -math.inf)
+        discs = zip(self.outlines, tops, strict=True)
+        its = [
+            outline.even.point_of(top)
+            for outline, top in discs
+            if outline.even.kind == DISC and top.mode.height > -math.inf
+        ]
+        return ellipse.likeliest_near(self.readings, as_ellipse_of_disc(its[0])) if its else nowhere
 
     def look_under(self, asked: Sequence[str]) -> dict[str, float]:
         """Look at the likely ones under other pressures; return each's probability beforehand."""
