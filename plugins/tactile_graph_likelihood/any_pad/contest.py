@@ -94,10 +94,11 @@ def _first_look(
     lead = begun.sought(readings, lead)
     if lead.mode.height == -math.inf:
         return readings, every, {}
-    knows = begun is not every[first]
-    if strays := begun.told.noise.strays if knows else begun.strays(readings, lead):
-        every = {name: any_pad.knowing(strays) for name, any_pad in every.items()}
-        lead = lead if knows else every[first].again(readings, lead)
+    its = begun
+    if its is every[first] and (strays := its.strays(readings, lead)):
+        its, lead = its.likelier_with(strays, readings, lead)
+    if its is not every[first]:
+        every = {name: any_pad.knowing(its.told.noise.strays) for name, any_pad in every.items()}
     readings, lead = every[first].cleared(readings, lead)
     its, readings, lead = every[first].on_told_foam(readings, lead)
     if its is not every[first]:
@@ -128,7 +129,7 @@ def _knowing_as_many(
         return every, found
     knowing = {name: any_pad.knowing(strays) for name, any_pad in every.items()}
     again = {name: its.again(readings, found[name]) for name, its in knowing.items()}
-    best = max(its.evidence for its in again.values())
+    best = max(its.evidence for its in again.values()) + every[first].bare_by(strays, readings)
     return (knowing, again) if best > found[first].evidence else (every, found)
 
 

@@ -75,7 +75,7 @@ from tactile_graph_likelihood.single.any_pressure import (
     mixed,
 )
 from tactile_graph_likelihood.single.changed import changed
-from tactile_graph_likelihood.single.element_terms import CONTRAST
+from tactile_graph_likelihood.single.element_terms import CONTRAST, UNKNOWN
 from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.model import EVERY, MORE, SECOND, Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, SPREADS, Noise
@@ -335,7 +335,18 @@ class AnyPad:
         """Return fits that are told of so many strays and their outline, or these if likelier."""
         knowing = self.knowing(strays)
         other = knowing.again(readings, even)
-        return (knowing, other) if other.evidence > even.evidence else (self, even)
+        likelier = other.evidence + self.bare_by(strays, readings) > even.evidence
+        return (knowing, other) if likelier else (self, even)
+
+    def bare_by(self, strays: float, readings: Readings) -> float:
+        """Return the log likelihood of a bare pad of so many strays over that of as many as told.
+
+        Evidence is over that of a bare pad.
+        """
+        told = self.told.noise.strays
+        bare = int(np.count_nonzero(readings.states != UNKNOWN)) - readings.touched
+        more, fewer = math.log(strays / told), math.log1p(-strays) - math.log1p(-told)
+        return readings.touched * more + bare * fewer
 
     def again(self, readings: Readings, even: Likeliest) -> Likeliest:
         """Return what is likelier, near an outline and elsewhere, now that strays are known."""
