@@ -390,6 +390,8 @@ class AnyPad:
             even = beyond_the_edge(its._fit(EVEN), readings, even)
         found = {EVEN: even}
         asked = [] if large else asked_by([even.fit], FIRST, CLEAR if self.quick else self._faint)
+        if asked and "fall" not in asked and self._has_no_foam(readings):
+            asked = [part for part in asked if part != FOAM]  # that of own gains falls to the rim
         hidden = bool(asked) and self._reaches_beyond(readings, even)
         for part in asked:
             if hidden and part != FOAM:
@@ -452,11 +454,16 @@ class AnyPad:
         whole = resized(whole, UNSEEN * unseen_share(tops[EVEN].fit.fall))
         return whole if self._reaches_beyond(readings, tops[best]) else evenly_spread(whole)
 
+    @staticmethod
+    def _has_no_foam(readings: Readings) -> bool:
+        """Return whether no foam shares elements' gains."""
+        return readings.through_foam is None and has_no_foam(readings)
+
     def _foam_by_scatter(self, tops: Mapping[str, Likeliest], readings: Readings) -> float:
         """Return by how much readings' scatter makes foam more probable than a round face."""
         if "fall" not in tops or FOAM not in tops:
             return 1.0
-        if readings.through_foam is None and has_no_foam(readings):
+        if self._has_no_foam(readings):
             return 0.0
         told = math.log(self.told.noise.sigma)
         by_foam, by_face = (float(tops[part].mode.p[-2]) - told for part in (FOAM, "fall"))
