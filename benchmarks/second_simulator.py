@@ -81,6 +81,8 @@ class Kind:
     stuck_elements: int = 0
     foam_cells: float = 0.0
     foam: Carry | None = None
+    own_gains: bool = False
+    """Whether gains and voids are the elements' own, under the foam, and not the contact's."""
     """How it carries loads on; as a Gaussian if not given."""
     pressure: Pressure = even
     discs: tuple[tuple[float, float], ...] = DISCS
@@ -181,10 +183,12 @@ class Bench:
         u, v = self._places(outline)
         pressed = np.where(u * u + v * v <= 1.0, np.maximum(kind.pressure(u, v), 0.0), 0.0)
         share = pressed.reshape(kind.rows, SOWN, kind.columns, SOWN).mean(axis=(1, 3))
+        if kind.own_gains:
+            share = (kind.foam or blurred)(share, kind.foam_cells)
         mixed = math.sqrt(kind.fixed) * self.own + math.sqrt(1.0 - kind.fixed) * self._field()
         share = share * np.exp(kind.sigma * mixed + self.lines)
         share[rng.random(share.shape) < kind.voids] = 0.0
-        if kind.foam_cells:
+        if kind.foam_cells and not kind.own_gains:
             share = (kind.foam or blurred)(share, kind.foam_cells)
         total = share.sum()
         load = share * (weight_g / total) if total > 0.0 else share
@@ -236,6 +240,20 @@ def with_tails(values: Values, width: float) -> Values:
         padded = np.pad(values, [(reach, reach) if a == axis else (0, 0) for a in (0, 1)])
         values = np.apply_along_axis(np.convolve, axis, padded, taps / taps.sum(), "valid")
     return values
+
+
+def deep(values: Values, depth: float) -> Values:
+    """Return values as felt so many cells down in a thick elastic layer (J. Boussinesq 1885)."""
+    reach, fine = 8, (np.arange(-2, 3) / 5.0)
+    far = (np.arange(-reach, reach + 1)[:, None] + fine).ravel()
+    felt = depth**3 / (far[:, None] ** 2 + far**2 + depth**2) ** 2.5
+    taps = felt.reshape(2 * reach + 1, 5, 2 * reach + 1, 5).sum(axis=(1, 3))
+    padded, (rows, columns) = np.pad(values, reach), values.shape
+    found = np.zeros_like(values)
+    for i in range(2 * reach + 1):
+        for j in range(2 * reach + 1):
+            found += taps[i, j] / taps.sum() * padded[i : i + rows, j : j + columns]
+    return found
 
 
 def to_neighbours(values: Values, share: float) -> Values:
@@ -308,6 +326,8 @@ KINDS: dict[str, Kind] = {
 FINGERS = replace(KINDS["small objects"], strays=0.01)
 
 FOAM = KINDS["foam 0.6 cells"]
+OVER = replace(FOAM, own_gains=True)
+"""Foam over elements that are uneven themselves."""
 
 EVEN = replace(
     BASE, element_cm=0.716, sigma=0.03, voids=0.0, noise_g=0.5, reads="kilopascal",
@@ -350,6 +370,22 @@ MORE_KINDS: dict[str, Kind] = {
     "foam, small objects": replace(FOAM, discs=SMALL, rectangles=SMALL_RECTANGLES),
     "foam, over the edge": replace(FOAM, over_edge=True),
     "foam, strays 1 %": replace(FOAM, strays=0.01),
+    "foam 0.4 cells, own gains": replace(OVER, foam_cells=0.4),
+    "foam 0.6 cells, own gains": OVER,
+    "foam 0.9 cells, own gains": replace(OVER, foam_cells=0.9),
+    "foam 0.4 cells, own gains 0.2": replace(OVER, foam_cells=0.4, sigma=0.2, voids=0.0),
+    "foam 0.6 cells, own gains 0.2": replace(OVER, sigma=0.2, voids=0.0),
+    "foam 0.9 cells, own gains 0.2": replace(OVER, foam_cells=0.9, sigma=0.2, voids=0.0),
+    "foam, own gains, noise 3 mV": replace(OVER, noise_v=3e-3),
+    "foam, own gains, small objects": replace(OVER, discs=SMALL, rectangles=SMALL_RECTANGLES),
+    "foam, own gains, round face": replace(OVER, pressure=round_face),
+    "deep foam 0.5 cells, own gains": replace(OVER, foam_cells=0.5, foam=deep),
+    "deep foam 1 cell, own gains": replace(OVER, foam_cells=1.0, foam=deep),
+    "deep foam 1 cell, own gains 0.2": replace(
+        OVER, foam_cells=1.0, foam=deep, sigma=0.2, voids=0.0
+    ),
+    "deep foam 1 cell": replace(BASE, foam_cells=1.0, foam=deep),
+    "round face, gains 0.2": replace(KINDS["round face"], sigma=0.2, voids=0.0),
     "foam with tails": replace(BASE, foam_cells=0.8, foam=with_tails),
     "to neighbours": replace(BASE, foam_cells=0.15, foam=to_neighbours),
     "even": EVEN,

@@ -139,3 +139,11 @@ def test_a_lost_element_within_is_bridged_and_the_circle_stays_whole() -> None:
     assert result["object"].mask.values[i, j]
     assert result["object"].mask.values[i, j + 1]
     assert result["circle"].radius_cm == pytest.approx(whole["circle"].radius_cm, abs=0.05)
+
+
+@pytest.mark.parametrize("shape", [(1, 16), (16, 1)])
+def test_a_single_row_of_cells_has_no_circle(shape: tuple[int, int]) -> None:
+    values = np.zeros(shape)
+    values.flat[5:11] = 2.0
+    outcome = load("bayes-circle").run(Frame.of(values, 1.0, quantity="volt")).outcomes["circle"]
+    assert "frame.image.rows > 1 and frame.image.columns > 1" in str(outcome)

@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 from helpers_likelihood import made
+from tactile_graph import Image, load
 from tactile_graph_likelihood.any_pad.choose import Locate, probabilities
 from tactile_graph_likelihood.any_pad.contest import _first_look, tops_of_each
+from tactile_graph_likelihood.any_pad.locate import LocateRectangle
+from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.single.any_pressure import EVEN
 from tactile_graph_likelihood.single.model import EVERY, FIRST, MORE, SAME, Model
 
@@ -108,3 +111,30 @@ def test_a_quick_search_ends_where_its_first_attempt_finds_no_more(monkeypatch):
                 n_ended[quick] += 1
                 assert after != tuple(MORE)
     assert n_ended[True] > 0
+
+
+@many
+def test_kinds_compare_where_all_know_of_as_many_strays():
+    frames = load("circle-3").with_source("simulate", scene="rectangles", frames=1).frames()
+    volts = next(iter(frames)).image
+    # Read as counts of an unknown pad, elements beside the rectangle pass for strays.
+    image = Image(np.round(volts.values * 1000.0), (1.0, 1.0), (0.0, 0.0), "raw")
+    step = Locate()
+    found = step(image)
+    assert (found.name, found.rectangle > 0.99) == ("rectangle", True)
+
+
+@many
+@pytest.mark.slow
+def test_strays_are_believed_where_readings_are_likelier_for_them():
+    outline = LocateRectangle()
+    step, learned = outline._any_pad, []
+    for kind in ("strays 4 %", "noise 1 mV"):
+        for frame in frames_of(kind, "rectangle", 8):
+            readings = observed(frame.image, outline._pad, None)
+            its, readings, even = step.first(readings)
+            fits, top = its.likelier_with(0.04, readings, even)
+            assert fits is its or top is not even
+            learned.append(fits is not its)
+    assert sum(learned[:8]) >= 7
+    assert sum(learned[8:]) <= 1

@@ -8,7 +8,8 @@ import pytest
 from scipy.ndimage import correlate1d
 from scipy.stats import norm
 
-from tactile_graph import Frame
+from tactile_graph import Circle, Frame, Image
+from tactile_graph_likelihood.any_pad.choose import Locate
 from tactile_graph_likelihood.any_pad.locate import LocateDisc
 from tactile_graph_likelihood.any_pad.spread_loads import shares_of, spread, unspread
 from tactile_graph_likelihood.any_pad.through_foam import (
@@ -247,3 +248,39 @@ def test_foam_that_is_told_wrongly_is_not_believed() -> None:
     told = LocateDisc(LocateSettings(gap_cm=0.3, foam_cm=0.8))(bare)
     assert told.radius_cm == LocateDisc(LocateSettings(gap_cm=0.3))(bare).radius_cm
     assert told.posterior.pressures.get("foam", 0.0) < 0.1
+
+
+def over_uneven(seed: int, width: float, sigma: float = 0.5, voids: float = 0.15) -> Image:
+    """Readings of a disc on foam, under which elements keep gains and voids of their own."""
+    rng = np.random.default_rng(seed)
+    loads = carried(pressed(seed, 0.0, 0.0), by_foam(width))
+    gains = np.exp(sigma * rng.standard_normal(loads.shape))
+    return frame_of(loads * gains * (rng.random(loads.shape) >= voids)).image
+
+
+@pytest.mark.slow
+def test_foam_over_uneven_elements_is_no_round_face() -> None:
+    step, off, held, foam = LocateDisc(LocateSettings(gap_cm=0.3, quick=True)), [], 0, []
+    for seed in range(24):
+        found = step(over_uneven(seed, 0.6))
+        off.append(abs(found.radius_cm - RADIUS_CM))
+        held += found.posterior.contains(Circle(*CENTRES_CM, RADIUS_CM))
+        foam.append(found.posterior.pressures.get("foam", 0.0))
+    assert np.mean(off) < 0.45
+    assert held >= 18
+    assert np.mean(foam) > 0.4
+
+
+@pytest.mark.slow
+def test_foam_that_is_told_is_known_over_uneven_elements() -> None:
+    untold = LocateDisc(LocateSettings(gap_cm=0.3))
+    told = LocateDisc(LocateSettings(gap_cm=0.3, foam_cm=0.6 * 1.3))
+    choice = Locate(settings=LocateSettings(gap_cm=0.3, foam_cm=0.6 * 1.3))
+    off = []
+    for seed in range(10):
+        image = over_uneven(seed, 0.6)
+        shapes = told(image), untold(image), choice(image).shape
+        off.append([abs(getattr(its, "radius_cm", RADIUS_CM) - RADIUS_CM) for its in shapes])
+    with_it, without_it, chosen = np.mean(off, axis=0)
+    assert with_it < 0.85 * without_it
+    assert chosen < 1.5 * with_it

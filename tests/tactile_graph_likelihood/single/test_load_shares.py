@@ -264,6 +264,8 @@ def test_foam_is_told_from_a_ball_by_what_neighbours_share():
     assert fewer["foam"] / ROUND > 2.0 * foam[2]  # among few elements, few neighbours are alike
     unknown = chances({"fall": None, "foam": None})
     assert unknown["foam"] / unknown["fall"] == pytest.approx(FOAM_ODDS)
+    own = chances({**others, "fall": replace(others["fall"], neighbours=0.0)}, 80, 0.0, 0.5)
+    assert own["foam"] / own["fall"] == pytest.approx(0.5)  # whatever neighbours are like
 
 
 @pytest.mark.slow
