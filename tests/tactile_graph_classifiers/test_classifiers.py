@@ -160,6 +160,25 @@ def test_what_has_no_variance_cannot_be_divided_by():
         MinimumDistance(database=export_of({"x": [[1.0, 2.0], [1.0, 3.0]]}))
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("over", ["variance", "deviation"])
+def test_features_of_huge_numbers_are_compared_without_a_warning(over):
+    objects = {n: rows * (1.0, 1e151) for n, rows in three_objects().items()}
+    one = MinimumDistance(database=export_of(objects), over=over)
+    found = one(reading(505.0, 41e151))
+    assert (found.name, found.known) == ("light", True)
+    assert 0.0 < found.limit < math.inf
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_variance_too_small_to_divide_by_is_refused():
+    objects = {n: rows * (1.0, 1e-120) for n, rows in three_objects().items()}
+    with pytest.raises(DataError, match=r"'area_cm2' of 'light' has a variance of \S+e-23., too"):
+        MinimumDistance(database=export_of(objects))
+    found = MinimumDistance(database=export_of(objects), over="deviation")(reading(505.0, 41e-120))
+    assert found.name == "light"
+
+
 # -- as the thesis modified it -----------------------------------------------------------------
 
 
