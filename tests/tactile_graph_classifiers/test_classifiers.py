@@ -19,6 +19,9 @@ from tactile_graph_classifiers.measuring.measurements import Measurements
 
 EACH = pytest.mark.parametrize("kind", [MinimumDistance, MinimumDistanceNormalised, Mahalanobis])
 
+OVERLAPPING = {"a": (10.0, 10.0), "b": (14.0, 10.0), "c": (12.0, 13.0)}
+"""Where objects lie whose readings vary by 1."""
+
 
 @EACH
 def test_each_known_object_is_found_and_the_runner_up_is_another(kind):
@@ -157,6 +160,25 @@ def test_what_has_no_variance_cannot_be_divided_by():
         MinimumDistance(database=export_of({"x": [[1.0, 2.0], [1.0, 3.0]]}))
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("over", ["variance", "deviation"])
+def test_features_of_huge_numbers_are_compared_without_a_warning(over):
+    objects = {n: rows * (1.0, 1e151) for n, rows in three_objects().items()}
+    one = MinimumDistance(database=export_of(objects), over=over)
+    found = one(reading(505.0, 41e151))
+    assert (found.name, found.known) == ("light", True)
+    assert 0.0 < found.limit < math.inf
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_variance_too_small_to_divide_by_is_refused():
+    objects = {n: rows * (1.0, 1e-120) for n, rows in three_objects().items()}
+    with pytest.raises(DataError, match=r"'area_cm2' of 'light' has a variance of \S+e-23., too"):
+        MinimumDistance(database=export_of(objects))
+    found = MinimumDistance(database=export_of(objects), over="deviation")(reading(505.0, 41e-120))
+    assert found.name == "light"
+
+
 # -- as the thesis modified it -----------------------------------------------------------------
 
 
@@ -175,6 +197,35 @@ def test_a_single_object_cannot_be_rejected_after_normalising():
     with pytest.raises(ValueError, match="with 'light' alone every distance is the same"):
         MinimumDistanceNormalised(database=data)
     assert MinimumDistanceNormalised(database=data, reject=False)(reading(1.0, 1.0)).name == "light"
+
+
+def test_a_stranger_far_off_in_every_feature_is_unknown_however_much_objects_vary():
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        objects = {n: rng.normal(at, 1.0, (20, 2)) for n, at in OVERLAPPING.items()}
+        one = MinimumDistanceNormalised(database=export_of(objects))
+        for angle in np.linspace(0.2, 1.3, 5) + np.array([[0.0], [0.5], [1.0], [1.5]]) * np.pi:
+            for a in angle:
+                assert one(reading(12 + 1e3 * np.cos(a), 11 + 1e3 * np.sin(a))).name == "unknown"
+
+
+def test_where_distances_cannot_be_too_far_known_objects_are_accepted_all_the_same():
+    rng = np.random.default_rng(0)
+    objects = {n: rng.normal(at, 1.0, (20, 2)) for n, at in OVERLAPPING.items()}
+    one = MinimumDistanceNormalised(database=export_of(objects))
+    found = [one(reading(*rng.normal(OVERLAPPING[n]))) for n in OVERLAPPING for _ in range(100)]
+    assert np.mean([it.known for it in found]) > 0.98
+
+
+def test_an_object_of_one_reading_is_recognised_by_how_the_others_vary():
+    rng = np.random.default_rng(0)
+    objects = {**three_objects(), "new": np.array([[1000.0, 100.0]])}
+    one = MinimumDistanceNormalised(database=export_of(objects))
+    fresh = normal_rows(rng, (1000.0, 100.0), (15.0, 6.0), 100)
+    assert np.mean([one(reading(*row)).name == "new" for row in fresh]) > 0.9
+    assert one(reading(1500.0, 104.0)).name == "unknown"
+    with pytest.raises(DataError, match="no object has two readings, so nothing says how much"):
+        MinimumDistanceNormalised(database=export_of({"a": [[1.0, 2.0]], "b": [[3.0, 4.0]]}))
 
 
 # -- Mahalanobis -------------------------------------------------------------------------------

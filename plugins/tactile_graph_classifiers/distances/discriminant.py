@@ -49,9 +49,10 @@ class CanonicalDiscriminant:
     readings and whole objects out: when they are learned, and kept in the database; when the
     pipeline is loaded for exports and for features chosen here. The distance is that of
     Mahalanobis, ``margin`` one minus the likelihood of the runner-up over that of the nearest,
-    both to a power at which the names of readings left out are likeliest: of the names that stand
-    at a margin m, a share of 1 / (2 - m) or so is right. What is accepted is the quantile of
-    readings left out (split conformal prediction).
+    ``probability`` the likelihood of the nearest over the sum of all, each to a power at which the
+    names of readings left out are likeliest: of the names that stand at a probability p, a share of
+    p or so is right. What is accepted is the quantile of readings left out (split conformal
+    prediction).
     """
 
     stateless = True
@@ -116,9 +117,10 @@ class CanonicalDiscriminant:
         if not math.isfinite(squares[0]):
             raise DataError("features", "they are too far from every known object for a number")
         limit, temperature = self._by_left_out(n_presses)
-        behind = float(np.ptp(scores.unlikeliness[0, order])) / temperature
-        found = self._identity(order.tolist(), squares, limit, behind)
-        return replace(found, n_presses=len(presses))
+        behind = (scores.unlikeliness[0] - scores.unlikeliness[0, order[0]]) / temperature
+        found = self._identity(order.tolist(), squares, limit, float(behind[order[-1]]))
+        probability = 1.0 / float(np.exp(-0.5 * behind).sum())
+        return replace(found, n_presses=len(presses), probability=probability)
 
     def _by_left_out(self, n_presses: int) -> tuple[float | None, float]:
         """Return the largest squared distance at which so many presses are accepted, and how hot.

@@ -34,12 +34,15 @@ class Identity:
         None where only one object is known.
     margin : float
         0 for a tie of the two, 1 if nothing else comes into question: 1 - distance /
-        runner_up_distance, or of a discriminant 1 - likelihood of the second / of the first, as
-        sure as readings left out allow.
+        runner_up_distance, or of a discriminant 1 - likelihood of the second / of the first. It
+        knows nothing of a third.
     n_presses : int
         How many readings of the object the answer rests on.
     note : str
         Why it is unknown though the nearest object is near enough; empty otherwise.
+    probability : float, optional
+        Of a discriminant: that it is the nearest object and no other known one, as sure as readings
+        left out allow; None where a classifier knows only distances.
     """
 
     name: str
@@ -53,6 +56,7 @@ class Identity:
     margin: float
     n_presses: int = 1
     note: str = ""
+    probability: float | None = None
     columns_shown: ClassVar[tuple[str, ...]] = (
         "name",
         "distance",

@@ -9,6 +9,7 @@ import numpy as np
 from annotated_types import Gt, Lt, MinLen
 from numpy.typing import NDArray
 
+from tactile_graph.errors import DataError
 from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.distances.classifier import (
     DEFAULT_FEATURES,
@@ -67,10 +68,10 @@ class MinimumDistance:
         self.takes, self.takes_by, self.takes_hint = self._lookup.taken
         known = self._lookup.known
         share = share_of_features(weights, len(known.features))
-        power = 2 if over == "variance" else 1
+        power = 2.0 if over == "variance" else 1.0
         variances = variances_of(known)
         self._means = known.means
-        self._precisions = _diagonals(share / variances**power)
+        self._precisions = _diagonals(share * _inverse(known, variances, power))
         self._limits = _limits(known, variances, share, power, confidence) if reject else None
 
     def __call__(self, features: Measurements) -> Identity:
@@ -86,12 +87,25 @@ class MinimumDistance:
         return self._lookup.identity(two, self._limits)
 
 
+def _inverse(known: Known, variances: Array, power: float) -> Array:
+    """Return one over a power of the variances, shape (K, F)."""
+    with np.errstate(over="ignore"):  # told below
+        found = variances**-power
+    for k, i in np.argwhere(np.isinf(found)):
+        raise DataError(
+            known.where,
+            f"{known.features[i]!r} of {known.names[k]!r} has a variance of {variances[k, i]:.3g},"
+            " too small to divide by; leave it out, or take the step 'mahalanobis'",
+        )
+    return np.asarray(found)
+
+
 def _diagonals(rows: Array) -> Array:
     """Return a diagonal matrix for each row, shape (K, F, F)."""
     return np.ascontiguousarray(rows[:, :, None] * np.eye(rows.shape[1]))
 
 
-def _limits(known: Known, variances: Array, share: Array, power: int, confidence: float) -> Array:
+def _limits(known: Known, variances: Array, share: Array, power: float, confidence: float) -> Array:
     """Return the largest squared distance at which each object is accepted, shape (K,)."""
     typical = (share * variances ** (1 - power)).sum(axis=1)
     ratios = []
@@ -100,7 +114,7 @@ def _limits(known: Known, variances: Array, share: Array, power: int, confidence
         usable = (own > 0.0).all(axis=1)  # the one reading that differed may be the one left out
         off = (out.readings - out.means)[usable]
         own = own[usable]
-        squares = (share * off**2 / own**power).sum(axis=1)
+        squares = (share * (off / own ** (0.5 * power)) ** 2).sum(axis=1)
         ratios.append(squares / (share * own ** (1 - power)).sum(axis=1))
     found = np.concatenate(ratios) if ratios else np.zeros(0)
     return np.asarray(typical * largest_accepted(found, confidence))

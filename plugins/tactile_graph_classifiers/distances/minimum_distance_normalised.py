@@ -9,6 +9,7 @@ import numpy as np
 from annotated_types import Gt, Lt, MinLen
 from numpy.typing import NDArray
 
+from tactile_graph.errors import DataError
 from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.distances.classifier import (
     DEFAULT_FEATURES,
@@ -22,6 +23,9 @@ from tactile_graph_classifiers.distances.variances import variances_of
 from tactile_graph_classifiers.measuring.measurements import Measurements
 
 Array = NDArray[np.float64]
+FARTHEST = 0.75
+"""Share of the largest squared distance there can be that a limit is at most. Strangers far away
+come near that distance, an object's own readings hardly ever."""
 
 
 class MinimumDistanceNormalised:
@@ -48,11 +52,17 @@ class MinimumDistanceNormalised:
     ------
     ValueError
         If it is to reject and there is only one object: every distance is then the same.
+    DataError
+        If it is to reject and no object has two readings.
 
     Notes
     -----
     Thesis section 4.4.1. Each feature's distance is divided by the largest one to any known
-    object, so the answer depends on which others are known.
+    object, so the answer depends on which others are known, and no distance is larger than the
+    root of the sum of the weights. What is accepted is learned as for `minimum_distance`, but never
+    so much that a stranger far off in every feature is known; where objects differ little for how
+    they vary, one far off in some of the features may be: take `mahalanobis` there. An object of
+    one reading borrows the variance of the others.
     """
 
     stateless = True
@@ -97,14 +107,15 @@ class MinimumDistanceNormalised:
 
     def _learned(self, known: Known, confidence: float) -> Array:
         """Return the largest squared distance at which each object is accepted, shape (K,)."""
-        variances = np.diagonal(known.covariances, axis1=1, axis2=2)
+        variances = _variances(known)
         typical = np.array(
             [self._typical(k, m, v) for k, (m, v) in enumerate(zip(known.means, variances,
                                                                    strict=True))]
         )  # fmt: skip
         ratios = [self._ratios(out) for out in left_out(known)]
         found = np.concatenate(ratios) if ratios else np.zeros(0)
-        return np.asarray(typical * largest_accepted(found, confidence))
+        learned = typical * largest_accepted(found, confidence)
+        return np.asarray(np.minimum(learned, FARTHEST * self._share.sum()))
 
     def _largest(self, number: int, reading: Array) -> Array:
         """Return what each feature is divided by for a reading of an object, shape (F,)."""
@@ -131,3 +142,19 @@ class MinimumDistanceNormalised:
             if typical > 0.0:
                 ratios.append(float(self._share @ (parts / largest) / typical))
         return np.array(ratios, dtype=np.float64)
+
+
+def _variances(known: Known) -> Array:
+    """Return how each object's features vary about its mean, shape (K, F).
+
+    That of an object of one reading is what the others' variance makes of a further reading.
+    """
+    variances = np.diagonal(known.covariances, axis1=1, axis2=2)
+    single = known.counts < 2
+    if single.all():
+        raise DataError(
+            known.where,
+            "no object has two readings, so nothing says how much readings vary; learn more",
+        )
+    common = np.diagonal(known.scatters.sum(axis=0)) / (known.counts[~single] - 1.0).sum()
+    return np.where(single[:, None], 2.0 * common, variances)

@@ -40,8 +40,10 @@ def fit_circle(points: Points) -> FittedCircle:
     out too large by about s**2 / (2 R) on a full circle and by more on a short arc; the centre
     has no bias on a full circle. Best radius for a given centre is the mean of d, so two unknowns
     are left; Levenberg and Marquardt's iteration with the exact second derivatives starts from
-    the hyper fit. Source: N. Chernov 2010, Circular and Linear Regression, chapter 4; G. Taubin
-    1991, 10.1109/34.103273, and the sources of `fit_circle_hyper` for the start.
+    the hyper fit. Where that leaves an rms above a tenth of the radius, as on points that are of no
+    circle, the minimum found may be a local one: another circle may have a sum less still. Source:
+    N. Chernov 2010, Circular and Linear Regression, chapter 4; G. Taubin 1991,
+    10.1109/34.103273, and the sources of `fit_circle_hyper` for the start.
 
     Points that are centres of boundary cells lie half a cell inside the outline: so does the
     circle.

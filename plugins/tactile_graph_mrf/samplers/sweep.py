@@ -55,7 +55,8 @@ def sweep_cells(
             if q >= 4 and far_parted(across, down, offsets, cell, other, q):
                 continue
             if gaussian:
-                weight = costs[q // 2, n_levels]
+                # Less what an equal pair costs: a line that is summed out costs that one, too.
+                weight = costs[q // 2, n_levels] - costs[q // 2, n_levels - 1]
                 sharpness += weight
                 pull += weight * flat[other]
             else:

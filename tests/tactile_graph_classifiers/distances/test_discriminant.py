@@ -127,6 +127,32 @@ def test_margins_are_as_sure_as_names_are_right_where_readings_have_long_tails()
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("n_objects", "apart"), [(2, 1.0), (10, 0.7), (10, 0.0)])
+def test_probabilities_are_as_sure_as_names_are_right_among_objects_much_alike(n_objects, apart):
+    probabilities, right = [], []
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        middles = 20.0 + apart * rng.normal(size=(n_objects, 3))
+        objects = {f"{k}": at + rng.normal(size=(125, 3)) for k, at in enumerate(middles)}
+        learned, tested = split(objects, 25)
+        one = CanonicalDiscriminant(database=export_of(learned, NAMES[:3]), reject=False)
+        for name, rows in tested.items():
+            found = [one(Measurements(NAMES[:3], row, "gram")) for row in rows]
+            probabilities += [it.probability for it in found]
+            right += [it.name == name for it in found]
+    assert np.mean(probabilities) == pytest.approx(np.mean(right), abs=0.05)
+
+
+def test_the_probability_of_an_only_object_is_1_and_of_two_follows_from_the_margin():
+    some = three_objects()
+    one = CanonicalDiscriminant(database=export_of({"light": some["light"]}))
+    assert one(reading(505, 41)).probability == one(reading(505, 41)).margin == 1.0
+    two = CanonicalDiscriminant(database=export_of({n: some[n] for n in ("light", "heavy")}))
+    found = two(reading(1250, 40))
+    assert found.probability == pytest.approx(1.0 / (2.0 - found.margin))
+
+
+@pytest.mark.slow
 def test_where_all_left_out_are_named_right_margins_stay_as_they_are():
     some = examples(three_objects(), ("weight", "area_cm2"))
     named = name_left_out(some, Manner(0.1, 8, 16.0))

@@ -7,8 +7,9 @@ import references_fitters as references
 from helpers_circles import arc_xy
 from helpers_modes import compiled, plainly
 from tactile_graph.wires import Circle
+from tactile_graph_fitters.circle.algebraic import HYPER, algebraic_circle
 from tactile_graph_fitters.circle.geometric import refined, slopes, step_of
-from tactile_graph_fitters.circle.principal_axes import ONE_LINE
+from tactile_graph_fitters.circle.principal_axes import OK, ONE_LINE, into_frame
 
 
 @pytest.fixture
@@ -62,6 +63,23 @@ def test_bad_start_is_damped_to_the_same_minimum(uv, start):
     good, bad = refined(uv, 0.0, 0.0), refined(uv, *start)
     assert good[0] == bad[0] == 0
     assert bad[1:5] == pytest.approx(good[1:5], abs=1e-9)
+
+
+@pytest.mark.slow
+def test_no_start_finds_a_lower_minimum_where_the_rms_is_within_a_tenth_of_the_radius():
+    rng = np.random.default_rng(4)
+    within = 0
+    for _ in range(150):
+        degrees, noise = rng.uniform(60.0, 360.0), rng.choice([0.03, 0.1])
+        xy = arc_xy(Circle(0.0, 0.0, 1.0), degrees, int(rng.integers(6, 40)), noise, rng)
+        _, uv, _ = into_frame(xy)
+        status, _, _, radius, rms, _ = refined(uv, *algebraic_circle(uv, HYPER)[:2])
+        if status != OK or rms > 0.1 * radius:
+            continue
+        within += 1
+        others = [refined(uv, *start) for start in rng.uniform(-2.0, 2.0, (8, 2))]
+        assert all(other[4] >= rms * (1.0 - 1e-6) for other in others if other[0] == OK)
+    assert within > 100
 
 
 def test_saddle_between_two_equal_rows_is_left():

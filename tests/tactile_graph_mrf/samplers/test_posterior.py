@@ -44,6 +44,21 @@ def test_mean_and_deviation_are_those_of_the_posterior_within_the_stated_size(no
     np.testing.assert_allclose(got.deviation.values.ravel(), deviation, rtol=0.1)
 
 
+@pytest.mark.parametrize("lambda_l", [0.0, 1.0])
+@pytest.mark.parametrize("lines", ["none", "explicit", "marginal"])
+def test_cells_that_nothing_smooths_have_each_its_own_posterior(lines, lambda_l):
+    problem = tiny(3, 4, 5, lines=lines, lambda_d=0.0, lambda_l=lambda_l, sigma=1.5)
+    level = np.arange(5)
+    chances = np.exp(-0.5 * (level - problem.observed.reshape(-1, 1)) ** 2)
+    chances /= chances.sum(axis=1, keepdims=True)
+    mean = chances @ level
+    deviation = np.sqrt(chances @ level**2 - mean**2)
+    got = sampled(problem)
+    error = np.abs(got.mean.values.ravel() - mean)
+    assert (error < 4.5 * deviation / np.sqrt(4000)).all()
+    np.testing.assert_allclose(got.deviation.values.ravel(), deviation, rtol=0.1)
+
+
 @pytest.mark.parametrize("lines", ["explicit", "marginal"])
 def test_line_probabilities_are_those_of_the_posterior(lines):
     free = dict.fromkeys(("end", "straight", "corner", "tee", "cross", "parallel"), 0.0)

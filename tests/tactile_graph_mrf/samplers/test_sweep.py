@@ -23,6 +23,7 @@ SETTINGS = [
     {"order": 2, "smoothness": "truncated_quadratic"},
     {"order": 3, "noise": "student_t"},
     {"lines": "marginal"},
+    {"lines": "marginal", "lambda_d": 0.0},
     {"lines": "none", "noise": "laplace", "smoothness": "huber"},
 ]
 
