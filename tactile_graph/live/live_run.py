@@ -172,7 +172,8 @@ class LiveRun(Generic[ResultT]):
 
         It is made ready in the caller's thread, so that no frame waits for that. A node that keeps
         something goes on with it where the pipeline before has an equal one: of the same step,
-        settings and guard, that reads the same. So it does with what is known of its times.
+        settings and guard, that reads the same, with the same code and the same in the files that
+        settings name. So it does with what is known of its times.
 
         Parameters
         ----------
