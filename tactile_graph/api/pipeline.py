@@ -232,7 +232,8 @@ class Pipeline(Graph):
         Parameters
         ----------
         frames : iterable of Frame, Image or ndarray, optional
-            The pipeline's own source if not given. Bare arrays are numbered as they come.
+            The pipeline's own source if not given. Bare arrays are numbered as they come, frames
+            keep their number, by which steps draw their random ones.
         only, seed
             As in `run`.
 
