@@ -193,7 +193,7 @@ class Pipeline(Graph):
         frame : Frame, Image or ndarray, shape (rows, columns)
             A bare array becomes a frame of pitch 1 cm and quantity ``raw``.
         only : sequence of str, optional
-            Nodes or ``node.field`` to ask for instead of the pipeline's outputs.
+            Nodes or ``node.field`` to ask for instead of the pipeline's outputs; none means these.
         seed : int
             Seed of the steps that take randomness.
 

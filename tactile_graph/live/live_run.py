@@ -212,12 +212,13 @@ class LiveRun(Generic[ResultT]):
 
     def resume(self) -> None:
         """Go on with the next frame that comes."""
-        self._paused = False
+        with self._asking:
+            self._paused, self._steps = False, 0
 
     def step(self) -> None:
-        """While paused: answer one more frame, the next that comes."""
+        """While paused: answer one more frame, the next that comes; else nothing happens."""
         with self._asking:
-            self._steps += 1
+            self._steps += self._paused
 
     def stop(self) -> None:
         """End the run after the frame that is under way."""
