@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 
@@ -27,6 +28,16 @@ def moody(image: Image, *, plus: int = 0) -> int:
     if number == PRINTS:
         sys.stdout.write("something for people\n")
     return number + plus
+
+
+class FromFile:
+    """Gives what stood in a file when it was made."""
+
+    def __init__(self, *, file: Path) -> None:
+        self.number = int(file.read_text())
+
+    def __call__(self, image: Image) -> int:
+        return self.number
 
 
 class FewError(Degenerate):

@@ -193,7 +193,7 @@ class Pipeline(Graph):
         frame : Frame, Image or ndarray, shape (rows, columns)
             A bare array becomes a frame of pitch 1 cm and quantity ``raw``.
         only : sequence of str, optional
-            Nodes or ``node.field`` to ask for instead of the pipeline's outputs.
+            Nodes or ``node.field`` to ask for instead of the pipeline's outputs; none means these.
         seed : int
             Seed of the steps that take randomness.
 
@@ -232,7 +232,8 @@ class Pipeline(Graph):
         Parameters
         ----------
         frames : iterable of Frame, Image or ndarray, optional
-            The pipeline's own source if not given. Bare arrays are numbered as they come.
+            The pipeline's own source if not given. Bare arrays are numbered as they come, frames
+            keep their number, by which steps draw their random ones.
         only, seed
             As in `run`.
 

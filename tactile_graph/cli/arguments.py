@@ -21,8 +21,8 @@ from tactile_graph.cli.completions import (
     complete_with,
     is_source,
 )
-from tactile_graph.cli.named_files import is_there
 from tactile_graph.errors import UsageError
+from tactile_graph.pipeline.named_files import is_there
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:

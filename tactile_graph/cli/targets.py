@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from tactile_graph.cli.named_files import is_kept, named_by_settings, paths_in
 from tactile_graph.errors import UsageError
 from tactile_graph.files import Name, is_plain
+from tactile_graph.pipeline.named_files import is_kept, named_by_settings, paths_in
 
 if TYPE_CHECKING:
     from tactile_graph.pipeline.graph import Graph

@@ -23,7 +23,7 @@ from tactile_graph.compiled.chained import Chained
 from tactile_graph.compiled.kernel import compiled_later
 from tactile_graph.engine.operations.step_operation import Operation, State
 from tactile_graph.engine.plan import Item, Plan
-from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.conditions import Guard, reckons
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.steps.linked import Linked
 from tactile_graph.steps.signature import Signature
@@ -350,6 +350,8 @@ def spelled(guard: Guard, names: Mapping[str, str] | None = None) -> str | None:
             return None
         if isinstance(part, ast.Constant) and part.value.__class__ not in (int, float):
             return None
+        if reckons(part) and any(isinstance(p, ast.Name) for p in ast.walk(part)):
+            return None  # the guard's function has small numbers made wide
         if isinstance(part, ast.Name):
             part.id = (names or {}).get(part.id, part.id)
     return None if guard.groups else ast.unparse(tree)

@@ -27,7 +27,8 @@ from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.program import make_program
 from tactile_graph.errors import Degenerate, RuleError, UsageError
 from tactile_graph.pipeline.facts import quantity_trouble
-from tactile_graph.pipeline.graph import FrameRule, Graph, Node
+from tactile_graph.pipeline.graph import FrameRule, Graph, Isolation, Node
+from tactile_graph.pipeline.made_of import MadeOf, made_of
 from tactile_graph.shared_process import (
     errors_of_numpy,
     go_away,
@@ -42,6 +43,7 @@ from tactile_graph.wires.image import Image
 from tactile_graph.wires.stacks import ImageStack
 
 ResultT = TypeVar("ResultT", bound=Outcomes)
+_Equal = tuple[str, Isolation | None, MadeOf | None]
 _new = object.__new__
 
 
@@ -59,7 +61,7 @@ class RunSettings:
         Decides for each frame what is left undone; nothing is if not given.
     after : Runner, optional
         Of the same seed, and verified likewise; not called any more once this one is. Nodes of
-        equal key go on with the state they have there.
+        equal key, code and files go on with the state they have there.
 
     Raises
     ------
@@ -115,6 +117,7 @@ class Runner(Generic[ResultT]):
         self._blank = blank_state(self.plan.n_slots)
         self._verify = settings.verify
         self._calls: dict[str, Call] = {}
+        self._made_of = made_of(pipeline)  # before steps read their files
         self._left = {} if before is None else before._keeping
         self._went_on: set[str] = set()
         self._decider = decider
@@ -211,10 +214,13 @@ class Runner(Generic[ResultT]):
         return self
 
     @property
-    def _keeping(self) -> dict[str, tuple[Node, Call]]:
-        """The calls that keep something (a state, a process), and whose they are."""
+    def _keeping(self) -> dict[str, tuple[_Equal, Call]]:
+        """The calls that keep something (a state, a process), and what makes a node their equal."""
         nodes = self.plan.pipeline.nodes
-        return {n: (nodes[n], c) for n, c in self._calls.items() if _keeps(nodes[n])}
+        return {n: (self._equal(nodes[n]), c) for n, c in self._calls.items() if nodes[n].keeps}
+
+    def _equal(self, node: Node) -> _Equal:
+        return node.key, node.isolation, self._made_of.get(node.name)
 
     def _call(self, node: Node) -> Call:
         if node.name not in self._calls:
@@ -229,8 +235,8 @@ class Runner(Generic[ResultT]):
         """Return the call of an equal node of the runner before, its own name's first."""
         nodes = self.plan.pipeline.nodes
         for name in (node.name, *(n for n in self._left if n not in nodes)):
-            other, call = self._left.get(name, (None, None))
-            if other is not None and (other.key, other.isolation) == (node.key, node.isolation):
+            equal, call = self._left.get(name, (None, None))
+            if equal is not None and equal == self._equal(node):
                 del self._left[name]
                 self._went_on.add(node.name)
                 self._take_processes(name, node.name)
@@ -420,10 +426,6 @@ class Runner(Generic[ResultT]):
 def _may_pass(outcomes: Outcomes) -> bool:
     """Return whether something failed that is not of the frame's data: it may pass by itself."""
     return any(not isinstance(f.error, Degenerate | RuleError) for f in outcomes.failures)
-
-
-def _keeps(node: Node) -> bool:
-    return node.stateful or node.isolation is not None
 
 
 def _embedded(

@@ -172,7 +172,8 @@ class LiveRun(Generic[ResultT]):
 
         It is made ready in the caller's thread, so that no frame waits for that. A node that keeps
         something goes on with it where the pipeline before has an equal one: of the same step,
-        settings and guard, that reads the same. So it does with what is known of its times.
+        settings and guard, that reads the same, with the same code and the same in the files that
+        settings name. So it does with what is known of its times.
 
         Parameters
         ----------
@@ -211,12 +212,13 @@ class LiveRun(Generic[ResultT]):
 
     def resume(self) -> None:
         """Go on with the next frame that comes."""
-        self._paused = False
+        with self._asking:
+            self._paused, self._steps = False, 0
 
     def step(self) -> None:
-        """While paused: answer one more frame, the next that comes."""
+        """While paused: answer one more frame, the next that comes; else nothing happens."""
         with self._asking:
-            self._steps += 1
+            self._steps += self._paused
 
     def stop(self) -> None:
         """End the run after the frame that is under way."""

@@ -196,11 +196,53 @@ def _check_depth(tree: ast.AST) -> None:
 
 def _function(meaning: str, n_refs: int, groups: Sequence[tuple[int, ...]]) -> Callable[..., Any]:
     arguments = [ast.arg(f"v{i}") for i in range(n_refs)]
-    rows = spelled_out(meaning, groups)
+    rows = _Reckoned().visit(spelled_out(meaning, groups))
     body = ast.Lambda(ast.arguments([], arguments, None, [], [], None, []), rows)
     code = compile(ast.fix_missing_locations(ast.Expression(body)), "<condition>", "eval")
-    function: Callable[..., Any] = eval(code, {"__builtins__": {}, "zip": zip, **FUNCTIONS})
+    function: Callable[..., Any] = eval(
+        code, {"__builtins__": {}, "zip": zip, "wide": _wide, **FUNCTIONS}
+    )
     return function  # of a whitelisted text
+
+
+class _Reckoned(ast.NodeTransformer):
+    """Writes ``wide(v0)`` for each value that is reckoned with, not only compared."""
+
+    def __init__(self) -> None:
+        self._within = False
+
+    def visit(self, node: ast.AST) -> Any:
+        before = self._within
+        self._within |= reckons(node)
+        try:
+            return super().visit(node)
+        finally:
+            self._within = before
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        its = node.id[1:].isdigit() and isinstance(node.ctx, ast.Load)
+        return ast.Call(ast.Name("wide", ast.Load()), [node], []) if its and self._within else node
+
+
+def reckons(node: ast.AST) -> bool:
+    """Return whether a part of a condition makes another number of those that it reads."""
+    if isinstance(node, ast.UnaryOp):
+        return isinstance(node.op, ast.USub)
+    if isinstance(node, ast.Call):
+        return isinstance(node.func, ast.Name) and node.func.id == "abs"
+    return isinstance(node, ast.BinOp)
+
+
+_WIDE = frozenset({float, int, np.float64})
+
+
+def _wide(value: Any) -> Any:
+    """Return a number that does not overflow early: of NumPy's types, some end at 127."""
+    if value.__class__ in _WIDE:
+        return value
+    if isinstance(value, np.integer | np.bool_):
+        return int(value)
+    return np.float64(value) if isinstance(value, np.floating) else value
 
 
 class _Compiler:

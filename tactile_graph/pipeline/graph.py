@@ -109,6 +109,11 @@ class Node:
         return self.signature is not None and self.signature.stateful
 
     @property
+    def keeps(self) -> bool:
+        """Whether it keeps something from frame to frame: a state, or a process of its own."""
+        return self.stateful or self.isolation is not None
+
+    @property
     def is_sink(self) -> bool:
         """Whether the node gives no value: it writes, shows or sends."""
         return self.output is type(None) or (self.kind is NodeKind.STEP and self.output is None)

@@ -11,14 +11,17 @@ from pathlib import Path
 from typing import Any
 
 from tactile_graph.api.pipeline import Pipeline
-from tactile_graph.cli.named_files import is_kept, is_there, named_by_settings, paths_in
-from tactile_graph.files import sha256_of
 from tactile_graph.pipeline.graph import Graph
+from tactile_graph.pipeline.named_files import (
+    content_of,
+    is_kept,
+    is_there,
+    named_by_settings,
+    paths_in,
+)
 from tactile_graph.plugins.registry import installed
 from tactile_graph.provenance import used_plugins
 
-JOURNALS = "*.journal"
-"""Of a folder that vouches for itself: they hold the checksums of all else that is in it."""
 WORDS = {
     "pipeline": "the pipeline or its settings",
     "options": "what is asked of it (--only, --seed, --frames, --format, …)",
@@ -33,14 +36,14 @@ def made_of(pipeline: Pipeline, options: Mapping[str, Any]) -> dict[str, str]:
     Files are taken by their content: those that a setting of the source or of a node names.
     """
     named = {path for path, _ in named_by_settings(pipeline)}
-    found = {f"file {path}": _content(path) for path in sorted(named)}
+    found = {f"file {path}": content_of(path) for path in sorted(named)}
     registry = pipeline.registry or installed()
     plugins = sorted({(p.name, p.version) for p in used_plugins(pipeline, registry)})
     return {
         "pipeline": _digest(pipeline.resolved()),
         "options": _digest(options),
         "versions": _digest([version("tactile-graph"), version("numpy"), plugins]),
-        "code": _digest([_content(p, "*.py") for p in _code(pipeline)]),
+        "code": _digest([content_of(p, "*.py") for p in _code(pipeline)]),
         **found,
     }
 
@@ -74,17 +77,6 @@ def _packages(graph: Graph) -> Iterator[str]:
     for node in graph.nodes.values():
         if node.inner is not None:
             yield from _packages(node.inner)
-
-
-def _content(path: Path, which: str = "*") -> str:
-    files = [path]
-    if path.is_dir():
-        files = sorted(path.glob(JOURNALS)) or sorted(p for p in path.rglob(which) if p.is_file())
-    whole = hashlib.sha256()
-    for file in files:
-        of_file = bytes.fromhex(sha256_of(file))
-        whole.update(f"{file.relative_to(path)}\n".encode() + of_file)
-    return whole.hexdigest()
 
 
 def _digest(data: Any) -> str:

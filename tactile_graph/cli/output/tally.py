@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import astuple, dataclass, field
@@ -31,6 +32,10 @@ COUNTS = (
     "n", "n_failed", "n_skipped", "n_lacking", "n_not_finite", "n_items_failed",
 )  # fmt: skip
 LONGEST_REASON = 300
+MOST_REASONS = 10
+"""Of one node, that differ in more than numbers: further ones are counted together."""
+OTHERWISE = "…"
+_NUMBER = re.compile(r"0x[\da-f]+|[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?", re.I)
 READ_ONLY = "; what goes into and comes out of steps is read-only: change a copy"
 
 
@@ -44,11 +49,16 @@ class _Kept:
     last_frame: int = -1
     n: int = 0
     """Frames; several items of one frame count once."""
+    words: str = ""
+    """What was said the first time, in full."""
+    varies: bool = False
+    """Whether other times had other words."""
 
     def join(self, later: _Kept) -> None:
         """Take in what came of later frames."""
         self.n += later.n - (later.first_frame == self.last_frame)
         self.last_frame = later.last_frame
+        self.varies |= later.varies or later.words != self.words
 
 
 @dataclass
@@ -125,7 +135,8 @@ class Tally:
     noticed : dict
         By node, what it has to say of its answers.
     failed, skipped, not_finite : dict
-        By node and reason, how often and where first.
+        By node and reason, how often and where first. Reasons of failures that differ in numbers
+        alone are one; beyond the first few of a node they are one as well.
     errors : dict
         By output and quantity, against the truth.
     started, seconds : float
@@ -163,8 +174,9 @@ class Tally:
         self.n_failed += Failed in classes
         self.n_skipped += Skipped in classes and Failed not in classes
         for failure in result.failures:
-            key = (failure.origin, failure.reason.partition("\n")[0])
-            self._keep(self.failed, key, result, failure, _why)
+            words = failure.reason.partition("\n")[0][:LONGEST_REASON]
+            key = self._place((failure.origin, _NUMBER.sub("#", words)))
+            self._keep(self.failed, key, result, failure, _why, words)
         strange = False
         for output in self.outputs:
             outcome = result.outcome(output.output)
@@ -183,6 +195,13 @@ class Tally:
         self.n_items_failed += sum(isinstance(gap, Failed) for gap in empty)
         self.n_not_finite += strange and good and not empty
         self._now()
+
+    def _place(self, key: tuple[str, str]) -> tuple[str, str]:
+        """Return under which node and reason a failure is counted: its own where there is room."""
+        if key in self.failed:
+            return key
+        n_reasons = sum(node == key[0] for node, _ in self.failed)
+        return key if n_reasons < MOST_REASONS else (key[0], OTHERWISE)
 
     def _now(self) -> None:
         """Note the time: what is compiled for a frame that does not come any more is beyond it."""
@@ -236,14 +255,16 @@ class Tally:
         result: Result,
         outcome: Any,
         said: Callable[[Any], str] = lambda outcome: str(outcome.reason),
+        words: str = "",
     ) -> None:
         frame = result.frame.index
         kept = where.get(key)
         if kept is None:
             item = tuple(getattr(outcome, "item", ()))
-            kept = where[key] = _Kept(said(outcome), item, frame)
+            kept = where[key] = _Kept(said(outcome), item, frame, words=words)
         kept.n += kept.last_frame != frame or kept.n == 0
         kept.last_frame = frame
+        kept.varies |= words != kept.words
 
     def _assumed(self, result: Result) -> None:
         """Note what nodes took that nobody said."""
@@ -305,12 +326,10 @@ class Tally:
         for node, told in later.assumed.items():
             self.assumed.setdefault(node, told)
         _join(self.noticed, later.noticed)
-        for mine, its in (
-            (self.failed, later.failed),
-            (self.skipped, later.skipped),
-            (self.not_finite, later.not_finite),
-        ):
-            _join(mine, its)
+        for key, kept in later.failed.items():
+            _join(self.failed, {self._place(key): kept})
+        _join(self.skipped, later.skipped)
+        _join(self.not_finite, later.not_finite)
         for output, errors in later.errors.items():
             _join(self.errors.setdefault(output, {}), errors)
         self._now()
@@ -367,8 +386,11 @@ class Tally:
                 yield _labelled("truth", "magenta", text)
 
     def _outcomes(self) -> Iterator[Text]:
-        for (node, _), kept in self.failed.items():
-            yield _labelled("failed", "red", f"{node} {_times(kept)}: {kept.text}")
+        for (node, reason), kept in self.failed.items():
+            other = reason == OTHERWISE
+            like = "in other words, like: " if other else ""
+            more = "; elsewhere with other numbers" if kept.varies and not other else ""
+            yield _labelled("failed", "red", f"{node} {_times(kept)}: {like}{kept.text}{more}")
         for (key, _), kept in self.not_finite.items():
             text = f"{key} {_times(kept)}: {kept.text}, which is no answer"
             yield _labelled("strange", "red", text)

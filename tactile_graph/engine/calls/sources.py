@@ -93,13 +93,14 @@ class Numbering:
     """
 
     def __init__(self) -> None:
-        self._given: tuple[int, str] | None = None
-        self._last = 0
+        self._last: dict[str, tuple[int, int]] = {}
+        """By label, the number that the last frame came with, and the one that it got."""
 
     def __call__(self, frame: Frame) -> Frame:
         """Return the next frame."""
-        given = frame.index, frame.label
-        if frame.index == 0 and given == self._given:
-            frame = frame.with_index(self._last + 1)
-        self._given, self._last = given, frame.index
+        given = frame.index
+        before, number = self._last.get(frame.label, (-1, 0))
+        if given == before == 0:
+            frame = frame.with_index(number + 1)
+        self._last[frame.label] = given, frame.index
         return frame

@@ -63,7 +63,8 @@ class Promises:
             broken = misfit(value, node.output) or _of_node(node, value, result)
             if broken:
                 raise PluginError(f"node {node.name!r}: {self._step(node)} {broken}")
-            self.waiting.remove(node)
+            # Another thread may have checked it too, or put it back: then it is checked again.
+            self.waiting = [n for n in self.waiting if n is not node]
 
     def _step(self, node: Node) -> str:
         signature = node.signature

@@ -145,6 +145,84 @@ def test_a_node_keeps_its_state_under_another_name() -> None:
     assert then(frame(10, 1))["total"] == 22
 
 
+class Gained:
+    """Times what stands in a file, and counts."""
+
+    def __init__(self, *, gain: Path) -> None:
+        self.gain, self.n = int(gain.read_text()), 0
+
+    def __call__(self, image: Image) -> int:
+        self.n += 1
+        return self.gain * int(image.values[0, 0]) + self.n
+
+
+class Scaled:
+    """Times what stands in a file."""
+
+    def __init__(self, *, gain: Path) -> None:
+        self.gain = int(gain.read_text())
+
+    def __call__(self, image: Image) -> int:
+        return self.gain * int(image.values[0, 0])
+
+
+@pytest.mark.parametrize(
+    "nodes",
+    [
+        "s: {step: gained, in: frame, with: {gain: FILE}}",
+        "number: {step: scaled, in: frame, with: {gain: FILE}}\n  s: {step: count, in: number}",
+    ],
+    ids=["of its own", "of what it reads"],
+)
+def test_a_node_begins_anew_where_a_file_was_changed(tmp_path: Path, nodes: str) -> None:
+    file = tmp_path / "gain.txt"
+    text = f"pipeline: p\nnodes:\n  {nodes.replace('FILE', str(file))}\noutputs: [s]\n"
+    known = registry({**STEPS, "gained": Gained, "scaled": Scaled})
+
+    def fresh() -> Pipeline:
+        return loads(text, "p.yaml", known)
+
+    file.write_text("1")
+    runner = fresh().runner()
+    runner(frame(10))
+    runner = fresh().runner(after=runner)
+    assert runner.anew == ()
+    runner(frame(10))
+    file.write_text("7")
+    changed = fresh()
+    runner = changed.runner(after=runner)
+    assert "s" in runner.anew
+    assert runner(frame(10))["s"] == changed.run(frame(10))["s"]
+
+
+def test_a_pipeline_goes_on_as_it_was_loaded_whatever_became_of_its_files(tmp_path: Path) -> None:
+    file = tmp_path / "gain.txt"
+    file.write_text("1")
+    text = f"pipeline: p\nnodes: {{s: {{step: gained, in: frame, with: {{gain: {file}}}}}}}\n"
+    graph = loads(text + "outputs: [s]\n", steps={"gained": Gained})
+    runner = graph.runner()
+    file.write_text("no number")
+    assert graph.runner(after=runner).anew == ()
+
+
+def test_a_step_that_was_redefined_begins_anew() -> None:
+    def kept(plus: int) -> type:
+        class Kept:
+            """Add a number."""
+
+            def __call__(self, image: Image) -> int:
+                return plus + int(image.values[0, 0])
+
+        return Kept
+
+    text = "pipeline: p\nnodes: {s: {step: mine, in: frame}}\noutputs: [s]\n"
+    first = loads(text, steps={"mine": kept(1)}).runner()
+    assert first(frame(10))["s"] == 11
+    then = loads(text, steps={"mine": kept(2)}).runner(after=first)
+    assert then.anew == ("s",)
+    assert then(frame(10))["s"] == 12
+
+
 def test_the_time_that_passed_is_told_across_the_change() -> None:
     first = pipeline().runner()
     first(frame(10, 0, 1.0))

@@ -144,6 +144,26 @@ def test_a_paused_run_lets_frames_pass_and_answers_one_for_each_step() -> None:
     assert run.n_shed == 0
 
 
+def test_steps_that_are_asked_for_while_it_runs_are_not_saved_up() -> None:
+    fed = Fed()
+    run = LiveRun(pipeline(), fed)
+    results = iter(run)
+    fed._given.append(frame(0, 0))
+    fed._more.set()
+    assert next(results).result.frame.index == 0
+    run.step()
+    run.pause()
+    fed.give(frame(1, 1))
+    run.step()
+    run.resume()
+    run.pause()
+    fed.give(frame(2, 2))
+    run.resume()
+    fed.give(frame(3, 3))
+    fed.give(None)
+    assert [live.result.frame.index for live in results] == [3]
+
+
 def test_a_source_is_closed_when_the_run_ends() -> None:
     closed = Event()
 

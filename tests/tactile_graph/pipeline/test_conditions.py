@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tactile_graph import Frame, loads
+from tactile_graph import Frame, Image, loads
 from tactile_graph.errors import PipelineError
 from tactile_graph.pipeline.conditions import compile_condition, names_in
 from tactile_graph.pipeline.references import ConditionError
@@ -54,6 +54,46 @@ VALUES = {"a": 3, "b": 0.5, "found.count": 2, "found.names": ("x", "y"), "text":
 def holds(text: str, named: dict[str, str] | None = None) -> bool:
     guard = compile_condition(text, TYPES, named)
     return bool(guard.function(*[VALUES[str(r)] for r in guard.refs]))
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("a - b > 10", False),
+        ("a + b < 100", False),
+        ("a * 2 < b", True),
+        ("-a > 0", False),
+        ("abs(a) > 0", True),
+        ("max(a, b) + 100 > 300", True),
+        ("count(flags) - a > 0", False),
+        ("any(items.size - a > 10)", False),
+        ("a < b", True),
+    ],
+)
+def test_small_numbers_of_numpy_are_reckoned_with_as_pythons_are(text: str, expected: bool) -> None:
+    guard = compile_condition(text, TYPES)
+    low, high = np.uint8(120), np.uint8(250)
+    values = {"a": low, "b": high, "flags": (True,), "items": (np.uint8(7),)}
+    assert bool(guard.function(*[values[str(r)] for r in guard.refs])) is expected
+    least = compile_condition("abs(a) > 0", TYPES)
+    assert least.function(np.int8(-128))
+
+
+def test_a_guard_that_the_program_itself_holds_reckons_so_too() -> None:
+    def peak(image: Image) -> float:
+        return image.values.max()  # type: ignore[no-any-return]
+
+    nodes = "{a: {step: peak, in: frame}, b: {step: peak, in: frame, when: -a > 0}}"
+    pipeline = loads(f"{{pipeline: p, nodes: {nodes}, outputs: [b]}}", steps={"peak": peak})
+    runner = pipeline.runner()
+    runner.prepare()
+    frame = Frame(Image(np.full((2, 2), 120, np.uint8)), 0)
+    assert [runner(frame).explain()[-1].state for _ in range(3)] == ["skipped"] * 3
+
+
+def test_parts_of_numbers_are_divided_by_0_as_before() -> None:
+    with np.errstate(all="ignore"):
+        assert compile_condition("b / 0.0 > 1", TYPES).function(np.float64(1.0))
 
 
 @pytest.mark.parametrize(

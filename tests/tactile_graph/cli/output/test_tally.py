@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from helpers_cli import call, install
-from tactile_graph import Circle, Degenerate, Image
-from tactile_graph.cli.output.tally import Tally
+from tactile_graph import Circle, Degenerate, Frame, Image, loads
+from tactile_graph.cli.output.tally import MOST_REASONS, Tally
 from tactile_graph.compiled.preparing import preparing
+from tactile_graph.engine.tables.columns import columns_of
 
 
 def nowhere(image: Image) -> Circle:
@@ -161,6 +162,56 @@ def test_a_wordy_failure_takes_one_line_and_a_silent_one_only_its_type() -> None
     assert len(told) < 500
     assert " in wordy)" in told
     assert "first in frame 0: ValueError (" in run("silent").stdout
+
+
+def by_value(image: Image) -> float:
+    raise Degenerate(f"total {float(image.values[0, 0]) / 7!r} is too large")
+
+
+def by_name(image: Image) -> float:
+    raise Degenerate(f"no {'x' * int(image.values[0, 0])} is known")
+
+
+def tallied(step: Any, numbers: range) -> Tally:
+    text = "pipeline: p\nnodes: {a: {step: s, in: frame}}\noutputs: [a]"
+    pipeline = loads(text, steps={"s": step})
+    tally = Tally(columns_of(pipeline, ("a",)))
+    for i in numbers:
+        tally.add(pipeline.run(Frame.of(np.full((2, 2), float(i)), index=i)))
+    return tally
+
+
+def closing(tally: Tally) -> list[str]:
+    return [line.plain for line in tally._outcomes() if line.plain.startswith("failed")]
+
+
+def test_failures_that_differ_in_numbers_alone_take_one_line() -> None:
+    tally = tallied(by_value, range(40))
+    told = "failed   a in 40 frames, first in frame 0: total 0.0 is too large; elsewhere with"
+    assert closing(tally) == [f"{told} other numbers"]
+    assert closing(tallied(by_value, range(1))) == ["failed   a in frame 0: total 0.0 is too large"]
+
+
+def test_of_a_node_that_words_each_failure_otherwise_a_few_are_told_and_all_counted() -> None:
+    tally = tallied(by_name, range(40))
+    lines = closing(tally)
+    assert len(lines) == MOST_REASONS + 1
+    assert lines[1] == "failed   a in frame 1: no x is known"
+    assert lines[-1].startswith(
+        "failed   a in 30 frames, first in frame 10: in other words, like: "
+    )
+    assert tally.data()["failures_by_node"] == {"a": 40}
+
+
+@pytest.mark.parametrize("step", [by_value, by_name])
+def test_what_parts_of_a_run_came_to_is_what_the_whole_did_and_stays_small(step: Any) -> None:
+    whole = tallied(step, range(40))
+    parts = tallied(step, range(5))
+    for start in range(5, 40, 5):
+        later = tallied(step, range(start, start + 5))
+        parts.join(Tally.of_kept(later.outputs, json.loads(json.dumps(later.kept()))))
+    assert parts.kept() == whole.kept()
+    assert len(parts.kept()["failed"]) <= MOST_REASONS + 1
 
 
 def test_an_item_of_a_list_that_failed_is_named_and_the_frame_is_not_whole() -> None:

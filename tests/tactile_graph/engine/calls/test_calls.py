@@ -287,6 +287,23 @@ def test_frames_of_a_source_that_numbers_none_are_numbered_and_others_left() -> 
         Frame.of(np.zeros((2, 2)), index=-1)
 
 
+def test_frames_of_sensors_that_take_turns_are_numbered_each_by_its_own() -> None:
+    def by_turns() -> Iterator[Frame]:
+        for _ in range(3):
+            for label in "ab":
+                yield Frame.of(np.zeros((2, 2)), label=label)
+
+    text = (
+        "pipeline: p\nsource: {step: by_turns}\nnodes: {n: {step: noisy, in: frame}}\noutputs: [n]"
+    )
+    steps = {"by_turns": by_turns, "noisy": noisy}
+    results = [*loads(text, steps=steps).stream()]
+    assert [(r.frame.label, r.frame.index) for r in results] == [
+        (label, i) for i in range(3) for label in "ab"
+    ]
+    assert len({r["n"] for r in results}) == 3
+
+
 def test_a_seed_below_0_is_told() -> None:
     text = "pipeline: p\nnodes:\n  a: {step: noisy, in: frame}\noutputs: [a]\n"
     pipeline = loads(text, "p.yaml", registry({"noisy": noisy}))

@@ -331,6 +331,19 @@ def test_a_runner_that_takes_anothers_place_takes_its_processes_too() -> None:
     assert then.anew == ()
 
 
+@pytest.mark.slow
+def test_a_process_is_not_taken_over_where_a_file_of_its_step_was_changed(tmp_path: Path) -> None:
+    file = tmp_path / "number.txt"
+    step = f"step: from_file, in: frame, isolated: true, with: {{file: {file}}}"
+    text = f"pipeline: p\nnodes: {{a: {{{step}}}}}\noutputs: [a]"
+    known = {"from_file": steps.FromFile}
+    file.write_text("1")
+    first = loads(text, steps=known).runner()
+    assert first(frame(0))["a"] == 1
+    file.write_text("2")
+    assert loads(text, steps=known).runner(after=first)(frame(0))["a"] == 2
+
+
 def test_a_runner_tells_how_the_processes_fare() -> None:
     runner = pipeline("step: moody, in: frame, isolated: true").runner()
     assert runner.processes == {"risky": ("", 0, False, "")}

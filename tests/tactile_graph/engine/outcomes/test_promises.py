@@ -179,3 +179,19 @@ def test_what_fits_a_type(value: Any, kind: Any) -> None:
 )
 def test_what_fits_no_type_says_what_it_is(value: Any, kind: Any, message: str) -> None:
     assert misfit(value, kind).startswith(message)
+
+
+def test_frames_may_be_checked_by_several_threads_at_once(registry: Registry) -> None:
+    pipeline = loads(text("right"), "p.yaml", registry)
+    result = pipeline.runner()(Frame.of(np.ones((2, 2))))
+    promises = pipeline.promises
+
+    class Meanwhile:
+        """A result that another thread checks while it is being checked."""
+
+        def __getattr__(self, name: str) -> Any:
+            promises.check(result)
+            return getattr(result, name)
+
+    promises.check(Meanwhile())  # type: ignore[arg-type]
+    assert promises.waiting == []

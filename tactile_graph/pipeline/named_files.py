@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from tactile_graph.files import sha256_of
+
 if TYPE_CHECKING:
     from tactile_graph.pipeline.graph import Graph
+
+JOURNALS = "*.journal"
+"""Of a folder that vouches for itself: they hold the checksums of all else that is in it."""
 
 
 class Named(NamedTuple):
@@ -49,6 +55,24 @@ def is_there(path: Path) -> bool:
 def is_kept(path: Path) -> bool:
     """Return whether there is such a file or folder: no device, no pipe."""
     return is_there(path) and (path.is_file() or path.is_dir())
+
+
+def content_of(path: Path, which: str = "*") -> str:
+    """Return a digest of what stands in a file, or in the files of a folder of that pattern.
+
+    Raises
+    ------
+    OSError
+        If one cannot be read.
+    """
+    files = [path]
+    if path.is_dir():
+        files = sorted(path.glob(JOURNALS)) or sorted(p for p in path.rglob(which) if p.is_file())
+    whole = hashlib.sha256()
+    for file in files:
+        of_file = bytes.fromhex(sha256_of(file))
+        whole.update(f"{file.relative_to(path)}\n".encode() + of_file)
+    return whole.hexdigest()
 
 
 def _named(settings: Mapping[str, Any], whose: str) -> Iterator[Named]:
