@@ -87,6 +87,20 @@ class Counting:
         return self.n, self.drawn
 
 
+class NeedsFile:
+    """Is made only where a file is there; crashes where the image says so."""
+
+    def __init__(self, *, path: str) -> None:
+        with open(path):
+            pass
+
+    def __call__(self, image: Image) -> int:
+        """Return what the image says."""
+        if image.values[0, 0] == CRASHES:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return int(image.values[0, 0])
+
+
 class Timed:
     """Counts its calls and is told of time; crashes where the image says so."""
 

@@ -67,6 +67,9 @@ class Interrupts:
             for number in (signal.SIGINT, *ENDS):
                 if signal.getsignal(number) is not signal.SIG_IGN:
                     self._before[number] = signal.signal(number, self._came)
+            owners = (getattr(handler, "__self__", None) for handler in self._before.values())
+            if not any(isinstance(owner, Interrupts) for owner in owners):
+                Interrupts.latest = None  # what came was for a command before
             self._told_before, sys.unraisablehook = sys.unraisablehook, self._swallowed
         return self
 

@@ -292,6 +292,9 @@ class Runner(Generic[ResultT]):
             go_away()
         try:
             self._operations.run(state)
+        except BaseException:  # Ctrl-C, for one
+            context.drop_items()
+            raise
         finally:
             if changes.n != before or errors_of_numpy() is not errors:
                 put_right(before, errors)
@@ -315,8 +318,12 @@ class Runner(Generic[ResultT]):
     def _settle(self, state: list[Any], operations: list[Operation]) -> None:
         context = self._context
         context.frame = state[0]
-        for settle in operations:
-            settle(state)
+        try:
+            for settle in operations:
+                settle(state)
+        except BaseException:  # Ctrl-C, for one
+            context.drop_items()
+            raise
         if context.inner_results or context.item_failures:
             self._note_items(state)
 

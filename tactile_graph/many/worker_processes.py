@@ -219,7 +219,7 @@ class _Line:
 
     def _died(self, error: Exception) -> DeadWorkerError:
         """Return what is said of a process whose pipe is at its end."""
-        from tactile_graph.engine.calls.isolated import how_ended
+        from tactile_graph.engine.calls.process import how_ended
 
         self.close()
         code = None

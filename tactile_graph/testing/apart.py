@@ -10,7 +10,7 @@ import sys
 from queue import Empty
 from typing import IO
 
-from tactile_graph.engine.calls.isolated import START_S, Process
+from tactile_graph.engine.calls.isolated import START_S
 from tactile_graph.engine.calls.isolated_worker import (
     ENDED,
     end_with_parent,
@@ -18,6 +18,7 @@ from tactile_graph.engine.calls.isolated_worker import (
     received,
     sent,
 )
+from tactile_graph.engine.calls.process import Process
 from tactile_graph.plugins.registry import Registry, installed, restrict, selected
 from tactile_graph.testing.cases import ORDINARY
 from tactile_graph.testing.examination import Broken
@@ -56,6 +57,9 @@ class Apart:
             except Empty:
                 what = f"was stopped, since it had not ended after {limit_s:.0f} s"
                 break
+            except BaseException:  # Ctrl-C, for one: its report would be taken for the next step's
+                self.close()
+                raise
             if kind == TRYING:
                 at, limit_s = value[0], IDLE * value[1] + GRACE_S
             elif kind == DONE:

@@ -45,3 +45,7 @@ class Context:
         """Processes that nodes of the runner which is being made share."""
         self.apart: dict[str, Host] = {}
         """Node -> its process, of the nodes of that runner which run apart."""
+
+    def drop_items(self) -> None:
+        """Forget what items came to of a frame that is broken off: the next one has its own."""
+        self.inner_results, self.item_failures = {}, []

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from dataclasses import fields as fields_of
 from typing import Any
 
 from tactile_graph.engine.calls.context import Context
@@ -23,6 +24,7 @@ from tactile_graph.engine.outcomes.outcome import (
     with_value,
 )
 from tactile_graph.engine.outcomes.outcomes import Outcomes
+from tactile_graph.engine.plan import OF_ITEM
 from tactile_graph.pipeline.embed import MASK
 from tactile_graph.pipeline.graph import FRAME, Binding, Node, NodeKind
 from tactile_graph.pipeline.wiring import arms
@@ -88,6 +90,10 @@ class InnerFrame(Frame):
     given: Mapping[str, Any] = field(default_factory=dict)
 
 
+OF_FRAME = tuple(f.name for f in fields_of(Frame) if (f.name,) not in OF_ITEM)
+"""What the frame of an item has of the frame that is under way."""
+
+
 def mapped(node: Node, context: Context) -> Call:
     """Return the embedded pipeline run over lists: of images, of what takes its nodes' places."""
     assert node.inner is not None
@@ -100,7 +106,7 @@ def mapped(node: Node, context: Context) -> Call:
 
     def call(**wired: Any) -> Any:
         results: list[Outcomes | None] = []
-        outer = context.frame
+        of_frame = {name: getattr(context.frame, name) for name in OF_FRAME}
         lacking: list[Any] = []
         for i in range(_length(wired, over)):
             values = {**wired, **{name: wired[name][i] for name in over}}
@@ -111,15 +117,7 @@ def mapped(node: Node, context: Context) -> Call:
                 continue
             mask = None if mask.__class__ in NO_VALUE else mask
             its = {name: values[name] for name in given}
-            inner = InnerFrame(
-                image,
-                outer.index,
-                outer.time_s,
-                label=outer.label,
-                mask=mask,
-                state_of=outer.state_of,
-                given=its,
-            )
+            inner = InnerFrame(image, mask=mask, given=its, **of_frame)
             results.append(run(inner, (*context.item, i)))
             lacking.append(None)
         context.inner_results[node.name] = results

@@ -4,32 +4,21 @@ A process is there before the first frame, of a node alone or of all nodes that 
 given what goes into a step and gives back what comes out, both pickled. Where a step takes longer
 than it may its process is killed, where that has ended by itself this is told; in both cases a new
 one is started at once, and until that is there its nodes are skipped, so that frames do not wait
-for it. The state that its steps kept is gone.
+for it. The state that its steps kept is gone. Ctrl-C ends it like any step that is at work; the
+next frame finds a new one, for which it waits unless state is gone, which a skip tells.
 """
 
 from __future__ import annotations
 
 import pickle
-import signal
-import subprocess
-import sys
-import weakref
 from collections.abc import Mapping
-from queue import Empty, Queue
-from threading import Thread
-from typing import IO, Any, NamedTuple
+from queue import Empty
+from typing import Any, NamedTuple
 
-from tactile_graph.engine.calls.isolated_worker import (
-    ENDED,
-    ERROR,
-    MADE,
-    Message,
-    received,
-    sent,
-)
+from tactile_graph.engine.calls.isolated_worker import ENDED, ERROR, MADE, Message
+from tactile_graph.engine.calls.process import Process
 from tactile_graph.engine.outcomes.outcome import raised_there
 from tactile_graph.errors import Skip, TactileGraphError, UsageError
-from tactile_graph.out_of_reach import out_of_reach
 from tactile_graph.pipeline.graph import Node
 from tactile_graph.steps.signature import Kind
 
@@ -50,6 +39,7 @@ class Order(NamedTuple):
 
     node: str
     pickled: bytes
+    keeps_state: bool
 
 
 def isolated_step(node: Node, injected: Mapping[str, Any], hosts: dict[str, Host]) -> Isolated:
@@ -83,7 +73,9 @@ def isolated_step(node: Node, injected: Mapping[str, Any], hosts: dict[str, Host
     host = hosts.get(name) or Host(name)
     if name:
         hosts[name] = host
-    return Isolated(host, host.add(Order(node.name, pickled)), isolation.time_limit_s)
+    return Isolated(
+        host, host.add(Order(node.name, pickled, node.stateful)), isolation.time_limit_s
+    )
 
 
 class ProcessState(NamedTuple):
@@ -151,16 +143,21 @@ class Host:
         self._name = name
         self._orders: list[Order] = []
         self._process = Process()
-        self._n_made = self._n_restarts = 0
+        self._awaited: list[int] = []
+        """Numbers of the steps that a new process is making, in the order it tells of them."""
+        self._unmade: set[int] = set()
+        """Of those that one could not make: they are tried again when they are called."""
+        self._n_restarts = 0
         self.n_lost = 0
         """How many calls came to nothing that the step itself gave or raised."""
-        self._ended_by = self._broken = ""
+        self._ended_by = ""
+        self._asking = False
+        """Whether a question is under way; where the next one begins: whether it was broken off."""
 
     @property
     def state(self) -> ProcessState:
         """How it fares; may be asked by another thread than the one that runs steps."""
-        n_known = self._n_made + self._process.messages.qsize()
-        starting = n_known < len(self._orders) and not self._broken
+        starting = self._process.messages.qsize() < len(self._awaited)
         return ProcessState(self._name, self._n_restarts, starting, self._ended_by)
 
     def add(self, order: Order) -> int:
@@ -173,141 +170,113 @@ class Host:
         Skip
             While it is being started anew: frames of a new label wait no more than others.
         """
-        if self._orders:
+        self._be_there()
+        if self._orders and not self._process.messages.empty():  # nobody has asked it for anything
+            self._start_anew(self._process.end_in_words())
             self._be_there()
         self._orders.append(order)
-        self._process.send(order.pickled)
-        self._take_note(START_S)
+        try:
+            self._make(len(self._orders) - 1)
+        except BaseException:  # its call asks for it anew
+            self._orders.pop()
+            raise
         return len(self._orders) - 1
-
-    def _be_there(self) -> None:
-        """Raise Skip where the process is being started anew; start it if it has ended since."""
-        if self._n_made < len(self._orders):
-            self._take_note(0.0)
-        elif not self._process.messages.empty():  # nobody has asked it for anything
-            self._start_anew(0, self._process.end_in_words())
-            self._take_note(0.0)
 
     def run(self, number: int, args: Any, kwargs: Mapping[str, Any], limit_s: float | None) -> Any:
         """Return what a step gives; raises what `Isolated` does."""
         self.n_lost += 1
-        if self._n_made < len(self._orders):
-            self._take_note(0.0)
-        self._process.send((number, args, kwargs))
+        self._be_there()
+        if number in self._unmade:
+            self._make(number)
+        question = pickle.dumps((number, args, kwargs))
         try:
-            kind, value = self._process.messages.get(timeout=limit_s)
+            kind, value = self._answer(question, limit_s)
         except Empty:
-            self._start_anew(number, f"took longer than its {limit_s:g} s")
+            self._start_anew(f"took longer than its {limit_s:g} s", number)
             why = f"{self._ended_by}: its process was killed, a new one starts"
             raise raised_there(OverrunError(why), "") from None
         if kind == ENDED:
-            self._start_anew(number, self._process.end_in_words())
+            self._start_anew(self._process.end_in_words(), number)
             raise raised_there(CrashedError(f"{self._ended_by}: a new one starts"), "")
         self.n_lost -= 1
         if kind == ERROR:
             raise raised_there(*value)
         return value
 
-    def _take_note(self, seconds: float) -> None:
-        """Take note of the steps that are made.
+    def _be_there(self) -> None:
+        """See that the process waits for a question; a new one where the last was broken off.
 
         Raises
         ------
         Skip
-            If one is not, and that is no wonder.
-        UsageError
-            If the process cannot run it.
+            While it is being started anew. One that keeps no state is waited for after Ctrl-C.
         """
-        messages = self._process.messages
-        while self._n_made < len(self._orders) and not self._broken:
+        if self._asking:  # the answer may come yet, and would be taken for that of the next frame
+            self._start_anew("was interrupted")
+            keeps_state = any(order.keeps_state for order in self._orders)
+            self._take_note(0.0 if keeps_state else START_S)
+        elif self._awaited:
+            self._take_note(0.0)
+
+    def _answer(self, question: bytes, seconds: float | None) -> Message:
+        """Return the answer to a question; raises Empty where it takes too long."""
+        self._asking = True
+        try:
+            self._process.send_packed(question)
+            message = self._process.messages.get(timeout=seconds)
+        except Empty:
+            raise
+        except BaseException:  # Ctrl-C, for one: the step is to stop
+            self._process.kill()
+            raise
+        self._asking = False
+        return message
+
+    def _make(self, number: int) -> None:
+        """Have a step made, and wait for it; raises UsageError where it cannot be."""
+        order = self._orders[number]
+        try:
+            kind, why = self._answer(pickle.dumps((number, order.pickled)), START_S)
+        except Empty:
+            kind, why = ENDED, f"it did not start within {START_S:g} s"
+        else:
+            why = self._process.end_in_words() if kind == ENDED else why
+        if kind == MADE:
+            self._unmade.discard(number)
+            return
+        self._unmade.add(number)
+        if kind == ENDED:
+            self._start_anew(why, number)
+        what = f"the process of {self._name}" if self._name else "its own process"
+        raise UsageError(f"node {order.node!r}: {what} cannot run the step: {why}")
+
+    def _take_note(self, seconds: float) -> None:
+        """Take note of the steps that a new process has made; raises Skip if one is awaited."""
+        while self._awaited:
+            self._asking = True  # until it is noted what has come: this may be broken off as well
             try:
-                kind, value = messages.get(timeout=seconds) if seconds else messages.get_nowait()
+                kind, _ = self._process.messages.get(seconds > 0.0, seconds or None)
             except Empty:
-                if seconds:
-                    self._broken = f"it did not start within {seconds:g} s"
-                    break
+                self._asking = False
                 what = f"the process of {self._name}" if self._name else "its process"
                 raise Skip(f"{what} is being started anew: the last {self._ended_by}") from None
-            if kind == MADE:
-                self._n_made += 1
+            if kind != MADE:
+                self._unmade.add(self._awaited[0])
+            if kind == ENDED:
+                self._start_anew(self._process.end_in_words(), self._awaited[0])
             else:
-                self._broken = value if kind != ENDED else self._process.end_in_words()
-        if self._broken:
-            node = self._orders[self._n_made].node
-            what = f"the process of {self._name}" if self._name else "its own process"
-            raise UsageError(f"node {node!r}: {what} cannot run the step: {self._broken}")
+                del self._awaited[0]
+            self._asking = False
 
-    def _start_anew(self, number: int, why: str) -> None:
-        self._ended_by = f"{why} at node {self._orders[number].node!r}" if self._name else why
-        self._n_made = 0
+    def _start_anew(self, why: str, number: int | None = None) -> None:
+        """Start another process, which makes all steps that the last one was able to make."""
+        self._asking = True
+        at = f" at node {self._orders[number].node!r}" if self._name and number is not None else ""
+        self._ended_by = why + at
         self._n_restarts += 1
         self._process.kill()
         self._process = Process()
-        for order in self._orders:
-            self._process.send(order.pickled)
-
-
-class Process:
-    """A process of a module that takes messages and gives some, and what it has said.
-
-    Parameters
-    ----------
-    module : str
-        What runs in it; the first message it takes is ``sys.path``.
-    """
-
-    def __init__(self, module: str = "tactile_graph.engine.calls.isolated_worker") -> None:
-        command = [sys.executable, "-m", module]
-        with out_of_reach():
-            self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        self._stdin: IO[bytes] = self._process.stdin
-        self.messages: Queue[Message] = Queue()
-        args = (self._process.stdout, self.messages)
-        Thread(target=_listen, args=args, name="isolated step", daemon=True).start()
-        self.kill = weakref.finalize(self, _ended, self._process)
-        self.send(sys.path)
-
-    def send(self, message: Any) -> None:
-        """Send something; where nobody is there any more, `messages` says so."""
-        try:
-            sent(self._stdin, message)
-        except OSError:
-            return
-
-    def end_in_words(self) -> str:
-        """Return how it ended."""
-        return f"ended its process {how_ended(self._process.wait())}"
-
-
-def how_ended(code: int | None) -> str:
-    """Return how a process ended, by the code that it left: ``by SIGKILL``, ``with code 3``."""
-    if code is None or code >= 0:
-        return f"with code {code}"
-    try:
-        return f"by {signal.Signals(-code).name}"
-    except ValueError:  # most real-time signals have no name
-        return f"by signal {-code}"
-
-
-def _listen(stdout: IO[bytes], messages: Queue[Message]) -> None:
-    with stdout:
-        while True:
-            try:
-                messages.put(received(stdout))
-            except EOFError:
-                messages.put((ENDED, None))
-                return
-            except Exception as error:  # what it gave cannot be read here
-                messages.put((ERROR, (error, "")))
-
-
-def _ended(process: subprocess.Popen[bytes]) -> None:
-    process.kill()
-    process.wait()
-    if process.stdin is not None:
-        try:
-            process.stdin.close()
-        except OSError:
-            return
+        self._awaited = [n for n in range(len(self._orders)) if n not in self._unmade]
+        for n in self._awaited:
+            self._process.send((n, self._orders[n].pickled))
+        self._asking = False

@@ -25,7 +25,11 @@ LOOK_S = 1.0
 
 def sent(file: IO[bytes], message: Any) -> None:
     """Write a message."""
-    data = pickle.dumps(message)
+    written(file, pickle.dumps(message))
+
+
+def written(file: IO[bytes], data: bytes) -> None:
+    """Write a message that is pickled already."""
     file.write(_LENGTH.pack(len(data)) + data)
     file.flush()
 
@@ -63,7 +67,8 @@ def end_with_parent() -> None:
 def serve(orders: IO[bytes], answers: IO[bytes], made: Callable[[], None]) -> None:
     """Make steps, and run them on whatever comes, until nothing more comes.
 
-    An order is the pickled step, or the number of one made before and what goes into it.
+    An order is a number and the pickled step, or the number of one made before and what goes into
+    it. A step that cannot be made is told, and takes nothing from the others.
 
     Parameters
     ----------
@@ -72,22 +77,23 @@ def serve(orders: IO[bytes], answers: IO[bytes], made: Callable[[], None]) -> No
         Called when a step is made, before that is told.
     """
     sys.path[:] = received(orders)
-    steps: list[Callable[..., Any]] = []
+    steps: dict[int, Callable[..., Any]] = {}
     while True:
         try:
             order = received(orders)
         except EOFError:
             return
-        if isinstance(order, bytes):
+        number, *given = order
+        if len(given) == 1:
             try:
-                steps.append(_made(order))
+                steps[number] = _made(*given)
                 made()
             except Exception as error:
                 sent(answers, (ERROR, f"{type(error).__name__}: {error}"))
-                return
-            sent(answers, (MADE, None))
+            else:
+                sent(answers, (MADE, None))
             continue
-        number, args, kwargs = order
+        args, kwargs = given
         before = changes.n
         try:
             answer: Message = VALUE, steps[number](*args, **kwargs)

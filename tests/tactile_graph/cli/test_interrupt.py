@@ -7,6 +7,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 
 import pytest
 
@@ -16,6 +17,21 @@ from tactile_graph.cli.interrupt import ENDS, Ended, Interrupts, code_of, words_
 def test_outside_of_what_is_held_it_comes_at_once():
     with pytest.raises(KeyboardInterrupt), Interrupts():
         signal.raise_signal(signal.SIGINT)
+
+
+def test_what_ended_one_command_does_not_end_the_next():
+    with pytest.raises(KeyboardInterrupt), Interrupts():
+        signal.raise_signal(signal.SIGINT)
+    with Interrupts():
+        assert Interrupts.latest is None
+
+
+def test_what_was_swallowed_before_a_part_of_a_command_comes_again_there():
+    with Interrupts():
+        with suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt), Interrupts() as interrupts:
+            interrupts.again()
 
 
 def write_a_line(done: list[str], number: signal.Signals = signal.SIGINT) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +52,17 @@ def wide(image: Image, *, least: int = 0) -> Mask:
 def twice(image: Image) -> Image:
     """Return the image with doubled readings."""
     return image.with_values(2.0 * image.values)
+
+
+def place(frame: Frame) -> str:
+    """Return all that the frame has beside its readings."""
+    names = [f.name for f in fields(Frame) if f.name not in ("image", "mask")]
+    return " ".join(getattr(frame, name) for name in names)
+
+
+def pair(image: Image) -> list[Image]:
+    """Return the image twice."""
+    return [image, image]
 
 
 def made(tmp_path: Path, nodes: str, outputs: str = "u") -> Any:
@@ -161,6 +173,31 @@ def test_a_contact_keeps_its_mask_as_the_inner_frame(tmp_path: Path) -> None:
     assert isinstance(inner.frame.mask, Mask)
     assert inner.frame.mask.count == 1
     assert inner.outcome("found").reason == "nothing asked for it"  # it has a mask already
+
+
+def test_the_frame_of_an_item_has_all_else_of_the_frame_that_is_under_way(tmp_path: Path) -> None:
+    text = """
+pipeline: inner
+nodes:
+  place: {step: place, in: frame}
+  sure: {step: place, in: frame, when: not frame.doubtful}
+outputs: [place, sure]
+"""
+    (tmp_path / "inner.yaml").write_text(text)
+    text = """
+pipeline: p
+nodes:
+  once: {use: inner.yaml, in: frame}
+  pair: {step: pair, in: frame}
+  each: {use: inner.yaml, in: pair, each: true}
+outputs: [once.place, once.sure, each.place, each.sure]
+"""
+    its: dict[str, Any] = {f.name: f.name for f in fields(Frame) if f.name not in ("image", "mask")}
+    registry = isolated({"place": place, "pair": pair})
+    result = loads(text, str(tmp_path / "p.yaml"), registry).run(Frame(Image(VALUES), **its))
+    assert result["each.place"] == (result["once.place"],) * 2 == (" ".join(its),) * 2
+    assert "each.sure" not in result
+    assert "once.sure" not in result
 
 
 def test_a_frame_that_is_whole_has_none_so_the_pipeline_finds_its_own(tmp_path: Path) -> None:

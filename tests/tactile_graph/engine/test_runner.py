@@ -15,6 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from helpers_graphs import STEPS, cases, frame, registry, shown
 from tactile_graph import Image, Pipeline, loads
 from tactile_graph.errors import Degenerate, UsageError
+from tactile_graph.wires.frame_stack import FrameStack
 
 FLOW = """
 pipeline: sums
@@ -279,6 +280,41 @@ def test_an_error_that_passes_is_not_kept_for_equal_frames_nor_for_all() -> None
     results = [runner(frame(1, i)) for i in range(3)]
     assert [len(r) for r in results] == [0, 2, 2]
     assert [r.reused for r in results] == [False, False, True]
+
+
+@pytest.mark.parametrize("in_blocks", [False, True])
+def test_what_items_of_a_frame_came_to_that_is_broken_off_is_not_told_of_the_next(
+    in_blocks: bool,
+) -> None:
+    def pair(image: Image) -> list[float]:
+        return [image.peak, 1.0]
+
+    def picky(number: float) -> float:
+        if number == 9.0:
+            raise ValueError("not this one")
+        return number
+
+    def broken_off(image: Image) -> float:
+        if image.peak == 9.0:
+            raise KeyboardInterrupt
+        return image.peak
+
+    text = """
+pipeline: p
+nodes:
+  pair: {step: pair, in: frame}
+  picky: {step: picky, in: pair, each: true}
+  slow: {step: broken_off, in: frame}
+outputs: [picky, slow]
+"""
+    own = {"pair": pair, "picky": picky, "broken_off": broken_off}
+    runner = loads(text, "p.yaml", registry(own)).runner()
+    run = (lambda f: runner.block(FrameStack.of([f]))[0]) if in_blocks else runner
+    with pytest.raises(KeyboardInterrupt):
+        run(frame(9))
+    result = run(frame(2))
+    assert result["picky"] == (2.0, 1.0)
+    assert not result.failures
 
 
 def test_what_hangs_on_no_frame_and_fails_for_its_data_is_tried_once() -> None:

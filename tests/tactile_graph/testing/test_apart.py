@@ -98,6 +98,23 @@ def test_the_copy_of_a_step_that_forks_answers_for_no_step(found: registry.Regis
     assert not [line for r in reports for line in r.lines()]
 
 
+def test_a_trial_that_is_interrupted_answers_for_no_other_step(
+    found: registry.Registry, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def comes(**_: object) -> None:
+        raise KeyboardInterrupt
+
+    trier = Apart(found)
+    trier.examine("good")
+    with monkeypatch.context() as patch:
+        assert trier._process is not None
+        patch.setattr(trier._process.messages, "get", comes)
+        with pytest.raises(KeyboardInterrupt):
+            trier.examine("forks")
+    assert trier.examine("good").step == "good"
+    trier.close()
+
+
 def test_a_step_that_its_plugin_has_run_apart_is_examined_apart(found: registry.Registry) -> None:
     told = "step 'ends': an image without cells: ended its process with code 3"
     for step in ("ends", "rough.ends", found.load("steps", "ends")):

@@ -18,9 +18,9 @@ import pytest
 import helpers_isolated as steps
 import helpers_isolated_kernels as kernel_steps
 from helpers_graphs import STEPS, frame, registry
-from tactile_graph import Image, Pipeline, hookimpl, loads
+from tactile_graph import Frame, Image, Pipeline, hookimpl, loads
 from tactile_graph.compiled import mode
-from tactile_graph.engine.calls.isolated import how_ended
+from tactile_graph.engine.calls.process import how_ended
 from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.pipeline.graph import Isolation
@@ -33,6 +33,7 @@ OWN = {
     "raises": steps.raises,
     "counting": steps.Counting,
     "timed": steps.Timed,
+    "needs_file": steps.NeedsFile,
     "elsewhere": steps.elsewhere,
     "readiness": kernel_steps.readiness,
     "unsendable": steps.unsendable,
@@ -114,6 +115,43 @@ def test_what_the_step_raises_and_prints_comes_through(capfd: pytest.CaptureFixt
     failed = runner(frame(steps.FAILS)).outcome("risky")
     assert (failed.kind, failed.reason) == ("degenerate", "too little")
     assert runner(frame(steps.PRINTS))["risky"] == steps.PRINTS
+
+
+def interrupt(runner: Any, given: Frame) -> None:
+    """Have Ctrl-C come while a process is waited for."""
+
+    def comes(*_: Any, **__: Any) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runner._apart["risky"]._process.messages, "get", comes)
+        with pytest.raises(KeyboardInterrupt):
+            runner(given)
+
+
+@pytest.mark.parametrize("number", [11, steps.HANGS])
+def test_a_frame_after_one_that_was_interrupted_has_its_own_answer(number: int) -> None:
+    runner = pipeline("step: moody, in: frame, isolated: true").runner()
+    interrupt(runner, frame(number))
+    assert [runner(frame(i))["risky"] for i in (20, 30)] == [20, 30]
+
+
+def test_what_an_interrupted_step_that_keeps_state_loses_is_told() -> None:
+    runner = pipeline("step: counting, in: frame, isolated: true").runner()
+    assert runner(frame(0))["risky"][0] == 1
+    interrupt(runner, frame(1))
+    told = "its process is being started anew: the last was interrupted"
+    assert runner(frame(2)).outcome("risky").reason == told
+    assert run_until_back(runner, 3)[-1]["risky"][0] == 1
+
+
+def test_an_interrupt_while_a_step_is_made_for_a_new_label_mixes_up_nothing() -> None:
+    runner = pipeline("step: counting, in: frame, isolated: true").runner()
+    assert runner(frame(0))["risky"][0] == 1
+    interrupt(runner, replace(frame(1), label="b"))
+    assert run_until_back(runner, 2)[-1]["risky"][0] == 1
+    assert runner(replace(frame(3), label="b"))["risky"][0] == 1
+    assert runner(frame(4))["risky"][0] == 2
 
 
 def test_a_step_that_reads_standard_input_finds_nothing_there() -> None:
@@ -306,6 +344,38 @@ def test_a_step_that_ends_the_process_takes_the_state_of_those_beside_it_and_is_
     assert result["sum"][0] == 1
 
 
+def test_a_step_that_cannot_be_made_for_a_label_takes_nothing_from_the_others(
+    tmp_path: Path,
+) -> None:
+    needed = tmp_path / "needed"
+    needed.touch()
+    text = f"""
+pipeline: p
+isolated: [t.*]
+nodes:
+  needy: {{step: needs_file, in: frame, with: {{path: {needed}}}}}
+  other: {{step: moody, in: frame}}
+outputs: [needy, other]
+"""
+    runner = loads(text, "p.yaml", registry({**STEPS, **OWN}, plugin="t")).runner()
+    assert runner(frame(5))["needy"] == 5
+    needed.unlink()
+    unmade = runner(replace(frame(6, 1), label="b"))
+    told = "the process of t cannot run the step: FileNotFoundError: "
+    assert told in unmade.outcome("needy").reason
+    assert unmade["other"] == 6
+    assert runner(frame(7, 2))["needy"] == 7
+    runner(frame(steps.CRASHES, 3))  # the new process cannot make that of this label either
+    end = time.monotonic() + 60
+    while "other" not in (unmade := runner(frame(8, 4))):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    assert told in unmade.outcome("needy").reason
+    needed.touch()
+    assert runner(replace(frame(9, 5), label="b"))["needy"] == 9
+    assert runner(frame(10, 6))["needy"] == 10
+
+
 def test_a_plugin_may_say_how_long_a_call_takes_at_most() -> None:
     graph = marked(elsewhere=2.5)
     assert graph.nodes["one"].isolation == Isolation(2.5, "risky")
@@ -435,7 +505,7 @@ worker = subprocess.Popen(
     stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
 )
 sent(worker.stdin, sys.path)
-sent(worker.stdin, pickle.dumps((time.sleep, {}, False)))
+sent(worker.stdin, (0, pickle.dumps((time.sleep, {}, False))))
 received(worker.stdout)
 sent(worker.stdin, (0, (600,), {}))
 time.sleep(0.2)
