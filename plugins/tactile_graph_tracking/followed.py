@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
 STALE = 4.0
 """Standard deviations of a place by which an acceleration may displace an object in the time
 between two frames: from then on the mean velocity since the last one is surer than the filter's."""
+
+MEMORY, BEFORE = 20, 4
+"""Frames over which it is told how an object's centre scatters, about; what is told before any is
+seen is worth so many."""
 
 State = Literal["appears", "moves", "rests", "leaves"]
 
@@ -53,6 +58,13 @@ class Followed:
         self.vx_cm_s = self.vy_cm_s = 0.0
         # Variances of place and velocity and their covariance, the same along x and y.
         self.place, self.both, self.speed = self.noise_cm**2, 0.0, self.fastest_cm_s**2
+        self.scatter = 1.0
+        """Mean squared distance from where it was expected, over what the filter makes of it."""
+
+    @property
+    def speed_std_cm_s(self) -> float:
+        """Standard deviation of its speed, by how its centre scatters."""
+        return math.sqrt(2.0 * self.speed * self.scatter)
 
     def go_on(self, dt_s: float, agility_cm_s2: float, patience_s: float) -> None:
         """Move on by a time, growing unsure by what an acceleration could have done.
@@ -86,6 +98,9 @@ class Followed:
         spread = self.place + self.noise_cm**2
         at, along = self.place / spread, self.both / spread
         off_x, off_y = x_cm - self.x_cm, y_cm - self.y_cm
+        if self.n_seen > 1:  # what is seen first after it appears tells of its speed alone
+            odd = 0.5 * (off_x**2 + off_y**2) / spread
+            self.scatter += (odd - self.scatter) / min(self.n_seen + BEFORE, MEMORY)
         self.x_cm += at * off_x
         self.y_cm += at * off_y
         self.vx_cm_s += along * off_x

@@ -21,6 +21,12 @@ STIR = 1.5
 ALONE = 2.0
 """What staying alone costs: as much as a pair at the gate whose areas have nothing in common."""
 
+REST_CM_S, STANDS_OUT = 1.0, 2.0
+"""The speed of rest that is found: so much, and no less than so many of its deviations."""
+
+PATIENCE_S, UNSEEN = 0.05, 2
+"""The patience that is found: so long, and no fewer frames."""
+
 GATE_CM, GATE_PITCHES = 2.6, 2.0
 """The gate that is found: so wide, and no fewer pitches."""
 
@@ -52,16 +58,18 @@ class Track:
     gate_cm : float or 'auto'
         Farthest from where it is expected that an object is still recognised. ``auto`` is 2.6 cm,
         or two pitches of the contacts' cells if that is more.
-    patience_s : float
+    patience_s : float or 'auto'
         How long an object may go unseen; after longer it leaves. One that is there again right
-        after a gap in the recording stays, however long the gap was.
+        after a gap in the recording stays, however long the gap was. ``auto`` is 0.05 s, and two
+        frames where these take longer: one that misses a single frame keeps its id.
     noise_cm : float
         Standard deviation of a contact's centre along x and along y.
     agility_cm_s2 : float
         Acceleration that objects are expected to undergo. Lower: steadier velocities.
-    rest_cm_s : float
+    rest_cm_s : float or 'auto'
         Slower objects rest. It is a speed on the pad, however large the cells are: where cells are
-        small, give less.
+        small, give less. ``auto`` is 1 cm/s, or where that is more twice the deviation of the
+        object's speed, which follows from the frames seen and from how its centre scatters.
     confirm_frames : int
         An object is told of from the so many-th frame on in which it is seen.
     frame_s : float
@@ -80,18 +88,24 @@ class Track:
         self,
         *,
         gate_cm: Annotated[float, Gt(0)] | Literal["auto"] = "auto",
-        patience_s: Annotated[float, Ge(0)] = 0.5,
+        patience_s: Annotated[float, Ge(0)] | Literal["auto"] = 0.5,
         noise_cm: Annotated[float, Gt(0)] = 0.15,
         agility_cm_s2: Annotated[float, Gt(0)] = 30.0,
-        rest_cm_s: Annotated[float, Ge(0)] = 1.0,
+        rest_cm_s: Annotated[float, Ge(0)] | Literal["auto"] = 1.0,
         confirm_frames: Annotated[int, Ge(1)] = 1,
         frame_s: Annotated[float, Gt(0)] = 0.02,
         most: Annotated[int, Ge(1)] = 256,
     ) -> None:
         self._gate_cm = GATE_CM if gate_cm == "auto" else gate_cm
-        self._gate_is_found, self._patience_s = gate_cm != "auto", patience_s
+        self._gate_is_found = gate_cm != "auto"
+        self._patience_s, self._unseen = (
+            (PATIENCE_S, UNSEEN) if patience_s == "auto" else (patience_s, 0)
+        )
         self._noise_cm, self._agility_cm_s2 = noise_cm, agility_cm_s2
-        self._rest_cm_s, self._confirm_frames = rest_cm_s, confirm_frames
+        self._rest_cm_s, self._stands_out = (
+            (REST_CM_S, STANDS_OUT) if rest_cm_s == "auto" else (rest_cm_s, 0.0)
+        )
+        self._confirm_frames = confirm_frames
         self._frame_s, self._most = frame_s, most
         self._now_s, self._call, self._last_id = 0.0, 0, 0
         self._all: list[Followed] = []
@@ -179,7 +193,11 @@ class Track:
     def _given_up(self) -> list[Followed]:
         """Forget those unseen for too long, and those too many; return them."""
         limit_s = self._patience_s + 1e-9  # a whole number of frames is still in time
-        kept = [one for one in self._all if self._now_s - one.seen_s <= limit_s]
+        kept = [
+            one
+            for one in self._all
+            if self._now_s - one.seen_s <= limit_s or self._call - one.call < self._unseen
+        ]
         if len(kept) > self._most:
             longest_seen = sorted(kept, key=lambda one: (-one.seen_s, one.number or math.inf))
             chosen = {id(one) for one in longest_seen[: self._most]}
@@ -197,11 +215,15 @@ class Track:
             self._last_id += 1
             one.number = self._last_id
         elif one.state == "appears":
-            one.state = "moves" if _speed(one) >= self._rest_cm_s else "rests"
+            one.state = "moves" if _speed(one) >= self._limit_cm_s(one) else "rests"
         else:
-            limit = self._rest_cm_s * (STIR if one.state == "rests" else 1.0)
+            limit = self._limit_cm_s(one) * (STIR if one.state == "rests" else 1.0)
             one.state = "moves" if _speed(one) >= limit else "rests"
         return _record(one, one.state, self._now_s)
+
+    def _limit_cm_s(self, one: Followed) -> float:
+        """Return the speed below which an object rests."""
+        return max(self._rest_cm_s, self._stands_out * one.speed_std_cm_s)
 
 
 def _speed(one: Followed) -> float:

@@ -1,4 +1,5 @@
 import math
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -251,6 +252,39 @@ def test_the_state_a_resting_object_is_in_does_not_flicker_at_the_limit():
             x += start if k < 50 else 6.0 * DT
             tracks = track([Spot(x, 5.0)], gap_s=DT)
         assert tracks.tracks[0].state == expected
+
+
+@pytest.mark.parametrize("noise_cm", [0.01, 0.15])
+@pytest.mark.parametrize("dt_s", [0.01, 0.02, 0.1])
+def test_the_speed_of_rest_follows_from_how_centres_scatter(noise_cm, dt_s):
+    """Slow objects move where centres are sure, and none that rests stirs where they are not."""
+    rng = np.random.default_rng(5)
+    track, seen = Track(rest_cm_s="auto"), [Counter(), Counter()]
+    for k in range(120):
+        off = rng.normal(0.0, noise_cm, (2, 2))
+        spots = [Spot(4.0 + off[0, 0], 4.0 + off[0, 1])]
+        spots += [Spot(4.0 + 10.0 * dt_s * k + off[1, 0], 12.0 + off[1, 1])]
+        for one in track(spots, gap_s=dt_s).tracks:
+            seen[one.id - 1][one.state] += 1
+    assert seen[0] == {"appears": 1, "rests": 119}
+    assert seen[1]["moves"] >= 105
+
+
+def test_sure_centres_let_objects_move_slowly():
+    track = Track(rest_cm_s="auto")
+    for k in range(100):
+        tracks = track([Spot(4.0 + 2.0 * DT * k, 4.0)], gap_s=DT)
+    assert states(tracks) == {1: "moves"}
+
+
+@pytest.mark.parametrize(("dt_s", "frames"), [(0.2, 2), (0.02, 3)])
+def test_an_object_unseen_in_one_frame_keeps_its_id_at_any_rate(dt_s, frames):
+    track = Track(patience_s="auto")
+    for seen in (True, False, True):
+        tracks = track([Spot(4.0, 4.0)] if seen else [], gap_s=dt_s)
+    assert states(tracks) == {1: "rests"}
+    told = [states(track([], gap_s=dt_s)) for _ in range(frames)]
+    assert told == [*[{}] * (frames - 1), {1: "leaves"}]
 
 
 def test_ports_for_an_image_or_a_mask_take_a_track():

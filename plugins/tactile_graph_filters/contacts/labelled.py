@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import Contact, Contacts
+from tactile_graph_filters.contacts.labels import label
 from tactile_graph_filters.images.crop import widened
+
+APART = 2
+"""Cells within which pieces may be one object's, torn apart by voids."""
 
 
 def contacts_of(
-    labels: NDArray[np.int32], image: Image, min_cells: int = 1, margin: int = 0
+    labels: NDArray[np.int32],
+    image: Image,
+    min_cells: int = 1,
+    margin: int = 0,
+    min_alone: float = inf,
 ) -> Contacts:
     """Return a contact for each number, in reading order of their first cells.
 
@@ -25,6 +35,9 @@ def contacts_of(
         Smaller contacts are left out.
     margin : int
         How many more cells each contact's own image and mask have on each side.
+    min_alone : float
+        Smaller contacts of so many cells are kept, too, if these lie side by side and no other
+        contact's within two cells.
 
     Returns
     -------
@@ -41,9 +54,19 @@ def contacts_of(
     found = []
     for k in range(1, old.size + 1):
         own = ranked == k
-        if np.count_nonzero(own) >= min_cells:
+        n = np.count_nonzero(own)
+        if n >= min_cells or (n >= min_alone and _alone(labels, row[own], column[own])):
             found.append(_contact(k, (row[own], column[own]), image, labels, margin))
     return Contacts(tuple(found), len(found))
+
+
+def _alone(labels: NDArray[np.int32], row: NDArray[np.intp], column: NDArray[np.intp]) -> bool:
+    """Return whether a contact's cells lie side by side, and no other's within two cells."""
+    top, left = max(int(row.min()) - APART, 0), max(int(column.min()) - APART, 0)
+    near = labels[top : int(row.max()) + APART + 1, left : int(column.max()) + APART + 1]
+    if np.count_nonzero(near) > row.size:
+        return False
+    return len(label(near.astype(np.float64), near > 0, True, np.empty(near.shape, np.int32))) == 1
 
 
 def _contact(

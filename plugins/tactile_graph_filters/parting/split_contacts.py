@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from math import inf
+from typing import Annotated, Literal
 
 import numpy as np
 from annotated_types import Ge, Gt, Le, MinLen
@@ -19,6 +20,9 @@ from tactile_graph_filters.parting.joined_basins import joined
 from tactile_graph_filters.parting.object_scale import Cells, split_by_scale
 from tactile_graph_filters.parting.partition import Partition
 from tactile_graph_filters.parting.straight_cuts import joined_and_cut
+
+MIN_CELLS, MIN_ALONE = 4, 3
+"""Cells of a contact; and where they lie side by side, and nothing else near."""
 
 
 class SplitContacts:
@@ -46,8 +50,9 @@ class SplitContacts:
         A cell counts as partly void below this share of its object's mean reading.
     usual_cells : float
         Objects of fewer cells are doubted, the more the smaller they are.
-    min_cells : int
-        Smaller contacts are left out in the end.
+    min_cells : int or 'auto'
+        Smaller contacts are left out in the end. ``auto`` is 4, or 3 side by side with no other
+        contact within two cells: those are neither chance nor a piece of an object.
     smooth_cells : tuple of float
         Standard deviations, in cells, of the smoothing before the cut into basins. Each is
         tried; the one that ends in the lowest energy is taken.
@@ -85,7 +90,7 @@ class SplitContacts:
         hold: Annotated[float, Ge(0)] = 0.6,
         weak: Annotated[float, Ge(0), Le(1)] = 0.5,
         usual_cells: Annotated[float, Ge(0)] = 8.0,
-        min_cells: Annotated[int, Ge(1)] = 4,
+        min_cells: Annotated[int, Ge(1)] | Literal["auto"] = "auto",
         smooth_cells: Annotated[tuple[Annotated[float, Gt(0)], ...], MinLen(1)] = (0.6, 0.9),
         margin: Annotated[int, Ge(0)] = 0,
         recut: bool = True,
@@ -97,7 +102,8 @@ class SplitContacts:
         self._weak, self._recut = weak, recut
         self._cut_above, self._join_below = cut_above, join_below
         self._taps = [taps_of(sigma) for sigma in smooth_cells]
-        self._min_cells, self._margin = min_cells, margin
+        self._least = (MIN_CELLS, MIN_ALONE) if min_cells == "auto" else (min_cells, inf)
+        self._margin = margin
         self._working_cells = working_cells
 
     def __call__(self, image: Image, mask: Annotated[Mask, Grid.like("image")]) -> Contacts:
@@ -129,7 +135,7 @@ class SplitContacts:
             labels = self._labels(cells)
         else:
             labels = split_by_scale(cells, self._labels, self._working_cells)
-        return contacts_of(labels, image, self._min_cells, self._margin)
+        return contacts_of(labels, image, self._least[0], self._margin, self._least[1])
 
     def _labels(self, cells: Cells) -> NDArray[np.int32]:
         """Return the number of each cell's object, 0 where the cell is off."""

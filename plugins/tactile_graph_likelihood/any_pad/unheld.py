@@ -63,9 +63,11 @@ def unheld(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings,
     are normal around the limit, with their own deviation, if they are as dense as the others. Under
     the rim an even pad's readings scatter as those of its face do, and by the noise.
     """
+    over = readings.states == OVER
+    if not over.any():  # a limit may hold other contacts alone
+        readings = readings._replace(unheld=None)
     if readings.unheld is None or even.mode.height == -math.inf:
         return readings, even
-    over = readings.states == OVER
     logs, n = readings.unheld[over], int(np.count_nonzero(over))
     free = readings._replace(
         logs=readings.unheld, states=np.where(over, np.uint8(ON), readings.states), unheld=None

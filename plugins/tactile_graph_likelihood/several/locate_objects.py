@@ -24,9 +24,10 @@ from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, wi
 from tactile_graph_likelihood.any_pad.through_foam import without_foam
 from tactile_graph_likelihood.geometry.outline_prior import LARGEST, SMALLEST
 from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.fit_footprints import Footprints, Kind, SeveralSettings
 from tactile_graph_likelihood.several.joint_posterior import JointProblem
-from tactile_graph_likelihood.several.pad import OnPad, likeliest
+from tactile_graph_likelihood.several.pad import LEAST_ADJACENT, OnPad, likeliest
 from tactile_graph_likelihood.several.posteriors import goodness_of_load, posteriors
 from tactile_graph_likelihood.several.scene import laid
 from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
@@ -80,7 +81,9 @@ class LocateObjects:
     What counts as touched follows from the noise in the frame itself. Foam is undone where it is
     seen. Gains and voids are those of what the outlines cover whole, all objects together, beside
     what the pad says; where they differ much the search goes on from there. Readings at the end of
-    their range count as loads.
+    their range count as loads. ``fits`` is False, too, where three elements side by side are
+    touched and no object is found there; and more objects than ``most`` that lie apart lower
+    ``count_probability``. The order of the shapes means nothing: `track` keeps who is who.
     """
 
     stateless = True
@@ -135,6 +138,7 @@ class LocateObjects:
             fit.surprise,
             fit.surprise > STRANGE
             and found.count_probability > LIKELY
+            and not overlooked(problem, found)
             and float(np.mean([shape.centre_std_cm for shape in shapes])) < VAGUE * pitch,
         )
 
@@ -193,6 +197,15 @@ def log_odds(voids: float) -> float:
     """Return the log odds of a share of voids, which is never none nor all."""
     voids = min(max(voids, LEAST_VOIDS), MOST_VOIDS)
     return math.log(voids / (1.0 - voids))
+
+
+def overlooked(problem: JointProblem, found: OnPad) -> bool:
+    """Return whether elements side by side are touched where no outline lies on any of them."""
+    pieces = components.call(problem.states == ON, 1)
+    sizes = np.bincount(pieces.ravel())
+    sizes[0] = 0
+    sizes[pieces[laid(problem, found.outlines).share > 0.0]] = 0
+    return bool(sizes.max() >= LEAST_ADJACENT)
 
 
 def unbiased(neighbours: float, touched: int, n_outlines: int) -> float:

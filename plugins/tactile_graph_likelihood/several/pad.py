@@ -28,6 +28,10 @@ from tactile_graph_likelihood.single.search import LIGHT_EDGE
 REACH = 2
 """Cells within which touched elements may be one object's."""
 
+LEAST_ADJACENT = 3
+"""Touched elements side by side that may be an object where there are larger ones, too: strays are
+single ones."""
+
 MARGIN = 2
 """Cells around a part that are looked at with it."""
 
@@ -131,10 +135,14 @@ class Found:
 
 @dataclass(frozen=True, eq=False)
 class OnPad:
-    """The likeliest outlines on a pad, and the log probabilities of each number of them."""
+    """The likeliest outlines on a pad, and the log probabilities of each number of them.
+
+    Those of numbers beyond what is allowed are kept apart.
+    """
 
     parts: list[Found]
     counts: dict[int, float]
+    beyond: dict[int, float]
 
     @property
     def outlines(self) -> Configuration:
@@ -144,8 +152,9 @@ class OnPad:
     @property
     def count_probability(self) -> float:
         """Return the probability of this number among all that the search came upon."""
-        here = self.counts[self.outlines.count]
-        odds = [math.exp(min((log - here) / DOUBT, 50.0)) for log in self.counts.values()]
+        every = self.counts | self.beyond
+        here = every[self.outlines.count]
+        odds = [math.exp(min((log - here) / DOUBT, 50.0)) for log in every.values()]
         return 1.0 / sum(odds)
 
     def under(self, noise: Values, shared: float) -> OnPad:
@@ -155,17 +164,18 @@ class OnPad:
             its = part.scene
             scene = Search(its.problem._replace(noise=noise), its.kinds, its.more, shared)
             parts.append(replace(part, scene=scene))
-        return OnPad(parts, self.counts)
+        return OnPad(parts, self.counts, self.beyond)
 
 
 def parts_of(problem: JointProblem, expected: Expected, shared: float) -> list[Search]:
     """Return the parts of a pad that nothing connects, each with some cells around it."""
     on = problem.states == ON
-    labels = components.call(on, REACH)
+    labels, pieces = components.call(on, REACH), components.call(on, 1)
     sizes = np.bincount(labels.ravel())[1:]
-    large = (
-        np.flatnonzero(sizes >= LEAST_PIECE) if (sizes >= LEAST_PIECE).any() else [sizes.argmax()]
-    )
+    adjacent = np.zeros(sizes.size, np.int64)
+    np.maximum.at(adjacent, labels[on] - 1, np.bincount(pieces.ravel())[pieces[on]])
+    may_be = (sizes >= LEAST_PIECE) | (adjacent >= LEAST_ADJACENT)
+    large = np.flatnonzero(may_be) if may_be.any() else [sizes.argmax()]
     found = []
     for k in large:
         own = labels == k + 1
@@ -227,8 +237,10 @@ def likeliest(
         its = divisions[n]
         others = [(scene.rank(o) - scene.rank(its), o) for o in scene.every if o is not its]
         parts.append(Found(scene, its, others))
-    weighed, _ = chosen([scene.worths for scene in scenes], expected.most)
-    return OnPad(parts, weighed | {sum(counts): logs[sum(counts)]})
+    weighed, _ = chosen([scene.worths for scene in scenes], expected.most * len(scenes))
+    weighed |= {sum(counts): logs[sum(counts)]}
+    beyond = {n: weighed.pop(n) for n in list(weighed) if n > expected.most}
+    return OnPad(parts, weighed, beyond)
 
 
 def split(found: Configuration, scenes: list[Search]) -> list[Configuration | None]:

@@ -123,6 +123,22 @@ def test_small_contacts_are_left_out():
     assert SplitContacts(min_cells=1)(even(mask), mask).count == 2
 
 
+@pytest.mark.parametrize(
+    ("small", "count"),
+    [
+        ("......#./......##", 2),
+        ("....#.../...##...", 1),  # a piece that may have been torn off
+        (".....#.#/......#.", 2),
+        (".....#.#/.......#", 1),  # strays
+        ("......../......##", 1),
+    ],
+)
+def test_three_cells_side_by_side_are_an_object_where_nothing_else_is_near(small, count):
+    mask = drawn("\n".join(["###.....", "###.....", "###.....", "........", *small.split("/")]))
+    assert SPLIT(even(mask), mask).count == count
+    assert SplitContacts(min_cells=4)(even(mask), mask).count == 1
+
+
 def test_margin_widens_each_contacts_own_image():
     found = SplitContacts(margin=1)(even(NARROW), NARROW).contacts
     assert [c.box for c in found] == [(0, 6, 0, 8), (0, 6, 6, 14)]

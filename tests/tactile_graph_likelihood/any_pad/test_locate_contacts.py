@@ -1,9 +1,11 @@
 """Several contacts on one pad: each has an outline of its own."""
 
+import warnings
+
 import numpy as np
 import pytest
 
-from tactile_graph import load
+from tactile_graph import Frame, load
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.locate_contacts import LocateContacts, alone
 from tactile_graph_likelihood.any_pad.observed import observed
@@ -58,6 +60,26 @@ def test_a_contact_of_noise_has_no_outline():
     owner[readings.states == ON] = 1
     with pytest.raises(Degenerate, match="contact 2: no reading rises above the noise"):
         alone(readings, owner, 2)
+
+
+def held_beside_free():
+    """Return counts over two discs, of which a converter's range holds some of one."""
+    rng, at = np.random.default_rng(1), np.arange(16) + 0.5
+    strong = 5000.0 * (np.hypot(at - 4.0, at[:, None] - 4.0) < 3.0)
+    weak = 900.0 * (np.hypot(at - 12.0, at[:, None] - 11.0) < 2.6)
+    loads = (strong + weak) * np.exp(rng.normal(0.0, 0.3, strong.shape))
+    counts = np.round(50.0 + loads + rng.normal(0.0, 5.0, strong.shape))
+    return Frame.of(np.clip(counts, 0.0, 4095.0), 1.0, quantity="counts")
+
+
+@pytest.mark.slow
+def test_a_contact_beside_one_that_a_limit_holds_is_located_without_warnings():
+    frame = held_beside_free()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = LocateContacts(shapes=["disc"])(frame.image, contacts_of(frame))
+    assert found.count == 2
+    assert (found.shapes[1].x_cm, found.shapes[1].y_cm) == pytest.approx((12.0, 11.0), abs=0.4)
 
 
 def test_no_contact_has_no_outline():

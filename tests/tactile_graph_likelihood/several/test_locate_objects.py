@@ -9,6 +9,7 @@ import pytest
 from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
+from tactile_graph_likelihood.several.fit_footprints import SeveralSettings
 from tactile_graph_likelihood.several.locate_objects import VAGUE, LocateObjects, is_other, unbiased
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_tracking.score_objects import score_objects
@@ -93,6 +94,53 @@ def test_frames_whose_outlines_are_vague_are_flagged_and_others_are_not():
     assert 0 < sum(vague) < len(found)
     for its, flagged in zip(found, vague, strict=True):
         assert its.fits != (flagged or its.count_probability <= 0.5 or its.surprise <= -6.0)
+
+
+def discs(seed, side, *lying):
+    """Return counts over discs (x, y, radius) on a square pad of elements of 1 cm."""
+    rng, fine = np.random.default_rng(seed), (np.arange(10 * side) + 0.5) / 10.0
+    load = sum(np.hypot(fine - x, fine[:, None] - y) <= r for x, y, r in lying)
+    share = load.reshape(side, 10, side, 10).mean(axis=(1, 3))
+    gains = np.exp(rng.normal(0.0, 0.2, share.shape))
+    return Image(50.0 + 1500.0 * share * gains + rng.normal(0.0, 5.0, share.shape), (1.0, 1.0))
+
+
+EIGHT = [(5.0 + 7.0 * i, 9.0 + 13.0 * j, 2.0) for i in range(4) for j in range(2)]
+
+
+def test_more_objects_than_are_looked_for_are_flagged():
+    found = LocateObjects()(discs(1, 32, *EIGHT))
+    assert (found.count, found.fits) == (6, False)
+    assert found.count_probability < 0.5
+
+
+def test_as_many_objects_as_are_looked_for_are_not_flagged():
+    for most in (6, 12):
+        found = LocateObjects(most=most)(discs(1, 32, *EIGHT[:6]))
+        assert (found.count, found.fits) == (6, True)
+        assert found.count_probability > 0.9
+
+
+def small_beside_large():
+    """Return two discs, and three elements touched side by side."""
+    values = discs(2, 16, (4.0, 4.0, 2.0), (12.0, 5.0, 2.0)).values.copy()
+    values[12, 9], values[12, 10], values[13, 9] = 1500.0, 900.0, 800.0
+    return Image(values, (1.0, 1.0))
+
+
+def test_three_elements_beside_larger_objects_are_one():
+    found = LocateObjects()(small_beside_large())
+    assert (found.count, found.fits) == (3, True)
+    lowest = max(found.shapes, key=lambda its: its.y_cm)
+    assert (lowest.x_cm, lowest.y_cm) == pytest.approx((9.8, 12.8), abs=0.6)
+
+
+def test_three_elements_that_no_outline_explains_are_flagged():
+    values = discs(2, 24, (6.0, 6.0, 5.0)).values.copy()
+    values[17, 17], values[17, 18], values[18, 17] = 1500.0, 900.0, 800.0
+    large = SeveralSettings(on_pad="mostly", smallest_cm=4.0)
+    found = LocateObjects(settings=large)(Image(values, (1.0, 1.0)))
+    assert (found.count, found.fits) == (1, False)
 
 
 def test_nothing_above_the_noise_is_told():
