@@ -19,12 +19,13 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     learned,
     variance_inflation,
 )
-from tactile_graph_likelihood.any_pad.observed import NearlySquare, observed, uniform
-from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, within
+from tactile_graph_likelihood.any_pad.observed import NearlySquare, gap_by, observed, uniform
+from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, unsized, within
 from tactile_graph_likelihood.any_pad.through_foam import without_foam
 from tactile_graph_likelihood.geometry.outline_prior import LARGEST, SMALLEST
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.several.fit_footprints import Footprints, Kind, SeveralSettings
+from tactile_graph_likelihood.several.gap_of_all import sized
 from tactile_graph_likelihood.several.joint_posterior import JointProblem
 from tactile_graph_likelihood.several.pad import OnPad, likeliest
 from tactile_graph_likelihood.several.posteriors import goodness_of_load, posteriors
@@ -117,6 +118,10 @@ class LocateObjects:
         if readings.states.size <= LARGE_PAD:
             readings = without_foam(readings, self._told.foam_cm) or readings
         problem, found = self.searched(readings)
+        unsure_cm = 0.0
+        if self._gap_cm is None:
+            guess = gap_by(self._pad, image.pitch_cm)
+            problem, found, unsure_cm = sized(problem, readings, found, guess)
         pitch = float(readings.grid[2])
         parts, fit = posteriors(problem, found)
         alike = unbiased(fit.neighbours, readings.touched, len(parts))
@@ -126,7 +131,7 @@ class LocateObjects:
         if is_row(readings):
             smallest_cm, largest_cm = problem.prior[SMALLEST : LARGEST + 1].tolist()
             placed = [within(its, smallest_cm, largest_cm) for its in placed]
-        shapes = [stretched(its, readings) for its in placed]
+        shapes = [stretched(unsized(its, unsure_cm), readings) for its in placed]
         return Footprints(
             tuple(likely(shape) for shape in shapes),
             len(shapes),

@@ -11,6 +11,7 @@ import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Shape
+from tactile_graph_likelihood.any_pad.gap import narrower
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, Values, packed, unknowns
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.joint_posterior import (
@@ -147,6 +148,21 @@ class OnPad:
         here = self.counts[self.outlines.count]
         odds = [math.exp(min((log - here) / DOUBT, 50.0)) for log in self.counts.values()]
         return 1.0 / sum(odds)
+
+    @property
+    def height(self) -> float:
+        """What the outlines add to the log probability where they are."""
+        return sum(part.scene.worth(part.outlines) for part in self.parts)
+
+    def settled_on(self, side_cm: float) -> OnPad:
+        """Return what these outlines come to on elements of other sides, in the same places."""
+        parts = []
+        for part in self.parts:
+            its, grid = part.scene, part.scene.problem.grid
+            problem = its.problem._replace(grid=narrower(grid, float(grid[3]) - side_cm))
+            scene = Search(problem, its.kinds, its.more, its.shared)
+            parts.append(replace(part, scene=scene, outlines=scene.settled(part.outlines)[0]))
+        return OnPad(parts, self.counts)
 
     def under(self, noise: Values, shared: float) -> OnPad:
         """Return the same outlines under another noise."""

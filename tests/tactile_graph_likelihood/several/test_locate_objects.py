@@ -9,6 +9,7 @@ import pytest
 from tactile_graph.compiled import warm_up
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
+from tactile_graph_likelihood.several.fit_footprints import SeveralSettings
 from tactile_graph_likelihood.several.locate_objects import VAGUE, LocateObjects, is_other, unbiased
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_tracking.score_objects import score_objects
@@ -93,6 +94,46 @@ def test_frames_whose_outlines_are_vague_are_flagged_and_others_are_not():
     assert 0 < sum(vague) < len(found)
     for its, flagged in zip(found, vague, strict=True):
         assert its.fits != (flagged or its.count_probability <= 0.5 or its.surprise <= -6.0)
+
+
+def counts_of(lies, n, pitch, side, seed):
+    """Return counts on elements that sense what ``lies(x, y)`` within a side, in a larger pitch."""
+    rng, fine = np.random.default_rng(seed), (np.arange(10) + 0.5) / 10
+    at = (np.arange(n)[:, None] * pitch + fine * side + 0.5 * (pitch - side)).ravel()
+    load = (lies(at[None, :], at[:, None]) * 1.0).reshape(n, 10, n, 10).mean(axis=(1, 3))
+    values = 50 + 1000 * load * np.exp(rng.normal(0, 0.2, (n, n))) + rng.normal(0, 5, (n, n))
+    return Image(np.clip(np.round(values), 0, 4095), (pitch, pitch), quantity="counts")
+
+
+@pytest.mark.parametrize(
+    ("n", "pitch", "side"), [(32, 0.65, 0.5), (40, 0.5, 0.4), (32, 0.65, 0.65)]
+)
+def test_sizes_are_right_whatever_the_gap_of_elements_that_nothing_is_told_of(n, pitch, side):
+    width, off = n * pitch, []
+    for seed in range(6):
+        true = ((0.3 * width, 0.3 * width, 0.15 * width), (0.68 * width, 0.68 * width, 0.2 * width))
+        at = 0.05 * seed
+
+        def lies(x, y, true=true, at=at):
+            return sum(np.hypot(x - u - at, y - v - at) <= radius for u, v, radius in true)
+
+        found = LocateObjects(kinds=["disc"])(counts_of(lies, n, pitch, side, seed))
+        assert found.count == 2
+        shapes = sorted(found.shapes, key=lambda its: its.x_cm)
+        off += [
+            (its.radius_cm - r) / its.radius_std_cm
+            for its, (*_, r) in zip(shapes, true, strict=True)
+        ]
+    assert np.sqrt(np.mean(np.square(off))) < 1.7
+
+
+def test_a_gap_that_is_told_stays():
+    lies = lambda x, y: np.hypot(x - 8.0, y - 9.0) <= 4.0  # noqa: E731
+    image = counts_of(lies, 32, 0.65, 0.5, 1)
+    (told,) = LocateObjects(kinds=["disc"], settings=SeveralSettings(gap_cm=0.15))(image).shapes
+    (wrong,) = LocateObjects(kinds=["disc"], settings=SeveralSettings(gap_cm=0.0))(image).shapes
+    assert told.radius_cm == pytest.approx(4.0, abs=0.02)
+    assert wrong.radius_cm < 3.97
 
 
 def test_nothing_above_the_noise_is_told():
