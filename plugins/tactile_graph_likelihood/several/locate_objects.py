@@ -27,6 +27,7 @@ from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.several.fit_footprints import Footprints, Kind, SeveralSettings
 from tactile_graph_likelihood.several.gap_of_all import sized
 from tactile_graph_likelihood.several.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.least_size import freed
 from tactile_graph_likelihood.several.pad import OnPad, likeliest
 from tactile_graph_likelihood.several.posteriors import goodness_of_load, posteriors
 from tactile_graph_likelihood.several.scene import laid
@@ -118,6 +119,8 @@ class LocateObjects:
         if readings.states.size <= LARGE_PAD:
             readings = without_foam(readings, self._told.foam_cm) or readings
         problem, found = self.searched(readings)
+        if self.expected.sizes_cm[0] is None and not is_row(readings):
+            problem, found = freed(problem, found)
         unsure_cm = 0.0
         if self._gap_cm is None:
             guess = gap_by(self._pad, image.pitch_cm)

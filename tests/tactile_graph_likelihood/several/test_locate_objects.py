@@ -127,6 +127,34 @@ def test_sizes_are_right_whatever_the_gap_of_elements_that_nothing_is_told_of(n,
     assert np.sqrt(np.mean(np.square(off))) < 1.7
 
 
+def bar(angle_deg, length=15.0, breadth=1.6):
+    """Return where a bar lies whose middle is at 10.4 cm."""
+    cos, sin = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
+
+    def lies(x, y):
+        u, v = (x - 10.4) * cos - (y - 10.4) * sin, (x - 10.4) * sin + (y - 10.4) * cos
+        return (np.abs(u) <= 0.5 * length) & (np.abs(v) <= 0.5 * breadth)
+
+    return lies
+
+
+def test_a_bar_narrower_than_any_that_is_sought_is_not_held_to_that():
+    off = []
+    for seed in range(8):
+        (its,) = LocateObjects(kinds=["rectangle"])(
+            counts_of(bar(40 + seed), 16, 1.3, 1.0, seed)
+        ).shapes
+        off.append((its.breadth_cm - 1.6) / its.breadth_std_cm)
+    assert np.sqrt(np.mean(np.square(off))) < 1.5
+
+
+def test_a_least_size_that_is_told_holds():
+    image = counts_of(bar(40), 16, 1.3, 1.0, 0)
+    settings = SeveralSettings(smallest_cm=1.0)
+    (its,) = LocateObjects(kinds=["rectangle"], settings=settings)(image).shapes
+    assert its.breadth_cm > 1.95
+
+
 def test_a_gap_that_is_told_stays():
     lies = lambda x, y: np.hypot(x - 8.0, y - 9.0) <= 4.0  # noqa: E731
     image = counts_of(lies, 32, 0.65, 0.5, 1)
