@@ -24,6 +24,7 @@ from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, un
 from tactile_graph_likelihood.any_pad.through_foam import without_foam
 from tactile_graph_likelihood.geometry.outline_prior import LARGEST, SMALLEST
 from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.several.enclosed import enclose
 from tactile_graph_likelihood.several.fit_footprints import Footprints, Kind, SeveralSettings
 from tactile_graph_likelihood.several.gap_of_all import sized
 from tactile_graph_likelihood.several.joint_posterior import JointProblem
@@ -51,8 +52,8 @@ ANEW = np.array([0.4, 1.0, 0.3])
 anew."""
 
 LIKELY, VAGUE, STRANGE = 0.5, 0.72, -6.0
-"""Where an answer is flagged: the number's probability is no larger, the mean deviation of all
-centres is larger, in pitches, or the surprise is no larger."""
+"""Where an answer is flagged, as is one that encloses a bare middle: the number's probability is no
+larger, the mean deviation of all centres is larger, in pitches, or the surprise is no larger."""
 
 FEW_ELEMENTS = 2.3
 """Factor of an outline's variance: its gains and voids are those of few elements, not the noise's
@@ -143,7 +144,8 @@ class LocateObjects:
             fit.surprise,
             fit.surprise > STRANGE
             and found.count_probability > LIKELY
-            and float(np.mean([shape.centre_std_cm for shape in shapes])) < VAGUE * pitch,
+            and float(np.mean([shape.centre_std_cm for shape in shapes])) < VAGUE * pitch
+            and not enclose(found),
         )
 
     def searched(self, readings: Readings) -> tuple[JointProblem, OnPad]:

@@ -155,6 +155,20 @@ def test_a_least_size_that_is_told_holds():
     assert its.breadth_cm > 1.95
 
 
+def test_a_ring_taken_for_several_objects_is_flagged():
+    found = []
+    for seed in range(8):
+
+        def lies(x, y, at=10.0 + 0.1 * seed):
+            far = np.hypot(x - at, y - 10.0)
+            return (far <= 4.0) & (far >= 2.9)
+
+        found.append(LocateObjects()(counts_of(lies, 16, 1.3, 1.0, seed)))
+    wrong = [its for its in found if its.count > 1]
+    assert wrong
+    assert not any(its.fits for its in wrong)
+
+
 def test_a_gap_that_is_told_stays():
     lies = lambda x, y: np.hypot(x - 8.0, y - 9.0) <= 4.0  # noqa: E731
     image = counts_of(lies, 32, 0.65, 0.5, 1)
