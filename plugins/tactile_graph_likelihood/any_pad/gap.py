@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Generic, TypeVar
 
+from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.model import Likeliest, Model
 from tactile_graph_likelihood.single.readings import Gap, Readings, is_row
 
@@ -27,38 +30,51 @@ EVEN = 0.25
 """Sigma of a fit up to which readings tell the gap of a pad whose gap was told."""
 
 
-class Tried:
+Top = TypeVar("Top")
+"""Most likely outlines, whatever holds them."""
+
+
+class Tried(Generic[Top]):
     """Outlines on elements of other gaps, each climbed to once.
 
     Parameters
     ----------
-    model : Model
+    climbed : callable
+        Returns the outlines on other elements, from those on elements nearly as large.
+    height : callable
+        Returns their log posterior.
     readings : Readings
-    even : Likeliest
-        The outline on elements as they were taken to be.
+    even : Top
+        The outlines on elements as they were taken to be.
     guess : Gap
     """
 
-    def __init__(self, model: Model, readings: Readings, even: Likeliest, guess: Gap) -> None:
-        self._model, self._readings, self._guess = model, readings, guess
+    def __init__(
+        self,
+        climbed: Callable[[Readings, Top], Top],
+        height: Callable[[Top], float],
+        readings: Readings,
+        even: Top,
+        guess: Gap,
+    ) -> None:
+        self._climbed, self._height = climbed, height
+        self._readings, self._guess = readings, guess
         self._pitch = float(readings.grid[2])
         self._told = self._pitch - float(readings.grid[3])
         self._most = max(MOST * self._pitch, self._told) + 1e-9
-        self._found: dict[float, tuple[Readings, Likeliest]] = {0.0: (readings, even)}
+        self._found: dict[float, tuple[Readings, Top]] = {0.0: (readings, even)}
 
     def gap_cm(self, steps: float) -> float:
         """Return the gap so many steps above the one that was taken."""
         return self._told + steps * STEP * self._pitch
 
-    def at(self, steps: float) -> tuple[Readings, Likeliest]:
-        """Return readings and outline on elements whose gap is so many steps above that."""
+    def at(self, steps: float) -> tuple[Readings, Top]:
+        """Return readings and outlines on elements whose gap is so many steps above that."""
         if steps not in self._found:
-            wider, grid = self.gap_cm(steps) - self._told, self._readings.grid.copy()
-            grid[:2] += 0.5 * wider
-            grid[3] -= wider
-            its = self._readings._replace(grid=grid)
+            wider = self.gap_cm(steps) - self._told
+            its = self._readings._replace(grid=narrower(self._readings.grid, wider))
             _, near = self._found[min(self._found, key=lambda known: abs(known - steps))]
-            self._found[steps] = its, self._model.likeliest_near(its, self._model.point_of(near))
+            self._found[steps] = its, self._climbed(its, near)
         return self._found[steps]
 
     def log_chance(self, steps: float) -> float:
@@ -67,7 +83,7 @@ class Tried:
         if not -1e-9 <= gap <= self._most:
             return -math.inf
         off = (gap - self._guess.middle_cm) / self._guess.std_cm
-        return self.at(steps)[1].mode.height - 0.5 * off * off
+        return self._height(self.at(steps)[1]) - 0.5 * off * off
 
     def best(self) -> int:
         """Return the likeliest gap in whole steps: no step to either side is likelier."""
@@ -92,11 +108,31 @@ class Tried:
         std_cm = max(std * STEP, SURE) * self._pitch
         return steps, min(std_cm, self._guess.std_cm)
 
-    def slope(self, best: int) -> float:
-        """Return by how much the outline's first size grows with the gap."""
+    def slope(self, best: int, size: Callable[[Top], float]) -> float:
+        """Return by how much a size of the outlines grows with the gap."""
         steps = [k for k in (best - 1, best, best + 1) if self.log_chance(k) > -math.inf]
-        first, last = (float(self.at(k)[1].mode.p[2]) for k in (steps[0], steps[-1]))
+        first, last = (size(self.at(k)[1]) for k in (steps[0], steps[-1]))
         return (last - first) / (max(len(steps) - 1, 1) * STEP * self._pitch)
+
+    def likeliest(self, size: Callable[[Top], float]) -> tuple[Readings, Top, float]:
+        """Return readings and outlines on elements of the likeliest gap.
+
+        The last is the deviation that it leaves of a size. A told gap stays unless it is clearly
+        another.
+        """
+        best = self.best()
+        steps, std_cm = self.around(best)
+        if self._guess.is_told and abs(steps) * STEP * self._pitch < CLEARLY * std_cm:
+            steps = 0.0
+        return *self.at(steps), self.slope(best, size) * std_cm
+
+
+def narrower(grid: Values, by_cm: float) -> Values:
+    """Return where elements lie, as in `Readings`, whose sides are so much shorter."""
+    found = grid.copy()
+    found[:2] += 0.5 * by_cm
+    found[3] -= by_cm
+    return found
 
 
 def sized(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
@@ -125,15 +161,17 @@ def sized(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings, 
         return readings, even
     if readings.unheld is not None:
         return _known_to(readings, 0.0 if guess.is_told else SLOPE * guess.std_cm), even
-    tried = Tried(model, readings, even, guess)
-    best = tried.best()
-    steps, std_cm = tried.around(best)
-    if guess.is_told and abs(steps) * STEP * float(readings.grid[2]) < CLEARLY * std_cm:
-        steps = 0.0
-    found, its = tried.at(steps)
+    tried = Tried(
+        lambda its, near: model.likeliest_near(its, model.point_of(near)),
+        lambda its: its.mode.height,
+        readings,
+        even,
+        guess,
+    )
+    found, its, std_cm = tried.likeliest(lambda its: float(its.mode.p[2]))
     if its.mode.height == -math.inf:
         return readings, even
-    return _known_to(found, tried.slope(best) * std_cm), its
+    return _known_to(found, std_cm), its
 
 
 def _known_to(readings: Readings, std_cm: float) -> Readings:

@@ -121,6 +121,15 @@ def resized(found: AnyPadPosterior, share: float) -> AnyPadPosterior:
     return changed(found, covariance=covariance)
 
 
+def unsized(found: AnyPadPosterior, std_cm: float) -> AnyPadPosterior:
+    """Return a posterior whose sizes may all be larger, or smaller, by a length."""
+    if std_cm == 0.0:
+        return found
+    lengths, covariance = slice(2, 2 + sizes.call(found.kind)), found.covariance.copy()
+    covariance[lengths, lengths] += std_cm * std_cm
+    return changed(found, covariance=covariance)
+
+
 def within(found: AnyPadPosterior, smallest_cm: float, largest_cm: float) -> AnyPadPosterior:
     """Return a posterior whose mean, top and points have no sizes that there cannot be.
 

@@ -19,14 +19,17 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     learned,
     variance_inflation,
 )
-from tactile_graph_likelihood.any_pad.observed import NearlySquare, observed, uniform
-from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, within
+from tactile_graph_likelihood.any_pad.observed import NearlySquare, gap_by, observed, uniform
+from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, unsized, within
 from tactile_graph_likelihood.any_pad.through_foam import without_foam
 from tactile_graph_likelihood.geometry.outline_prior import LARGEST, SMALLEST
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components
+from tactile_graph_likelihood.several.enclosed import enclose
 from tactile_graph_likelihood.several.fit_footprints import Footprints, Kind, SeveralSettings
+from tactile_graph_likelihood.several.gap_of_all import sized
 from tactile_graph_likelihood.several.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.least_size import freed
 from tactile_graph_likelihood.several.pad import LEAST_ADJACENT, OnPad, likeliest
 from tactile_graph_likelihood.several.posteriors import goodness_of_load, posteriors
 from tactile_graph_likelihood.several.scene import laid
@@ -50,8 +53,8 @@ ANEW = np.array([0.4, 1.0, 0.3])
 anew."""
 
 LIKELY, VAGUE, STRANGE = 0.5, 0.72, -6.0
-"""Where an answer is flagged: the number's probability is no larger, the mean deviation of all
-centres is larger, in pitches, or the surprise is no larger."""
+"""Where an answer is flagged, as is one that encloses a bare middle: the number's probability is no
+larger, the mean deviation of all centres is larger, in pitches, or the surprise is no larger."""
 
 FEW_ELEMENTS = 2.3
 """Factor of an outline's variance: its gains and voids are those of few elements, not the noise's
@@ -120,6 +123,12 @@ class LocateObjects:
         if readings.states.size <= LARGE_PAD:
             readings = without_foam(readings, self._told.foam_cm) or readings
         problem, found = self.searched(readings)
+        if self.expected.sizes_cm[0] is None and not is_row(readings):
+            problem, found = freed(problem, found)
+        unsure_cm = 0.0
+        if self._gap_cm is None:
+            guess = gap_by(self._pad, image.pitch_cm)
+            problem, found, unsure_cm = sized(problem, readings, found, guess)
         pitch = float(readings.grid[2])
         parts, fit = posteriors(problem, found)
         alike = unbiased(fit.neighbours, readings.touched, len(parts))
@@ -129,7 +138,7 @@ class LocateObjects:
         if is_row(readings):
             smallest_cm, largest_cm = problem.prior[SMALLEST : LARGEST + 1].tolist()
             placed = [within(its, smallest_cm, largest_cm) for its in placed]
-        shapes = [stretched(its, readings) for its in placed]
+        shapes = [stretched(unsized(its, unsure_cm), readings) for its in placed]
         return Footprints(
             tuple(likely(shape) for shape in shapes),
             len(shapes),
@@ -139,7 +148,8 @@ class LocateObjects:
             fit.surprise > STRANGE
             and found.count_probability > LIKELY
             and not overlooked(problem, found)
-            and float(np.mean([shape.centre_std_cm for shape in shapes])) < VAGUE * pitch,
+            and float(np.mean([shape.centre_std_cm for shape in shapes])) < VAGUE * pitch
+            and not enclose(found),
         )
 
     def searched(self, readings: Readings) -> tuple[JointProblem, OnPad]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Shape
+from tactile_graph_likelihood.any_pad.gap import narrower
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, Values, packed, unknowns
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.joint_posterior import (
@@ -157,14 +158,39 @@ class OnPad:
         odds = [math.exp(min((log - here) / DOUBT, 50.0)) for log in every.values()]
         return 1.0 / sum(odds)
 
-    def under(self, noise: Values, shared: float) -> OnPad:
-        """Return the same outlines under another noise."""
+    @property
+    def height(self) -> float:
+        """What the outlines add to the log probability where they are."""
+        return sum(part.scene.worth(part.outlines) for part in self.parts)
+
+    def on(
+        self, changed: Callable[[JointProblem], JointProblem], shared: float | None = None
+    ) -> OnPad:
+        """Return the same outlines on a pad of which something else is known."""
         parts = []
         for part in self.parts:
             its = part.scene
-            scene = Search(its.problem._replace(noise=noise), its.kinds, its.more, shared)
+            worth = its.shared if shared is None else shared
+            scene = Search(changed(its.problem), its.kinds, its.more, worth)
             parts.append(replace(part, scene=scene))
         return OnPad(parts, self.counts, self.beyond)
+
+    def under(self, noise: Values, shared: float) -> OnPad:
+        """Return the same outlines under another noise."""
+        return self.on(lambda its: its._replace(noise=noise), shared)
+
+    def settled(self) -> OnPad:
+        """Return what these outlines come to, brought to their joint mode."""
+        parts = [replace(it, outlines=it.scene.settled(it.outlines)[0]) for it in self.parts]
+        return OnPad(parts, self.counts)
+
+    def settled_on(self, side_cm: float) -> OnPad:
+        """Return what these outlines come to on elements of other sides, in the same places."""
+
+        def narrowed(its: JointProblem) -> JointProblem:
+            return its._replace(grid=narrower(its.grid, float(its.grid[3]) - side_cm))
+
+        return self.on(narrowed).settled()
 
 
 def parts_of(problem: JointProblem, expected: Expected, shared: float) -> list[Search]:

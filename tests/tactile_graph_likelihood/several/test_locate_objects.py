@@ -143,6 +143,88 @@ def test_three_elements_that_no_outline_explains_are_flagged():
     assert (found.count, found.fits) == (1, False)
 
 
+def counts_of(lies, n, pitch, side, seed):
+    """Return counts on elements that sense what ``lies(x, y)`` within a side, in a larger pitch."""
+    rng, fine = np.random.default_rng(seed), (np.arange(10) + 0.5) / 10
+    at = (np.arange(n)[:, None] * pitch + fine * side + 0.5 * (pitch - side)).ravel()
+    load = (lies(at[None, :], at[:, None]) * 1.0).reshape(n, 10, n, 10).mean(axis=(1, 3))
+    values = 50 + 1000 * load * np.exp(rng.normal(0, 0.2, (n, n))) + rng.normal(0, 5, (n, n))
+    return Image(np.clip(np.round(values), 0, 4095), (pitch, pitch), quantity="counts")
+
+
+@pytest.mark.parametrize(
+    ("n", "pitch", "side"), [(32, 0.65, 0.5), (40, 0.5, 0.4), (32, 0.65, 0.65)]
+)
+def test_sizes_are_right_whatever_the_gap_of_elements_that_nothing_is_told_of(n, pitch, side):
+    width, off = n * pitch, []
+    for seed in range(6):
+        true = ((0.3 * width, 0.3 * width, 0.15 * width), (0.68 * width, 0.68 * width, 0.2 * width))
+        at = 0.05 * seed
+
+        def lies(x, y, true=true, at=at):
+            return sum(np.hypot(x - u - at, y - v - at) <= radius for u, v, radius in true)
+
+        found = LocateObjects(kinds=["disc"])(counts_of(lies, n, pitch, side, seed))
+        assert found.count == 2
+        shapes = sorted(found.shapes, key=lambda its: its.x_cm)
+        off += [
+            (its.radius_cm - r) / its.radius_std_cm
+            for its, (*_, r) in zip(shapes, true, strict=True)
+        ]
+    assert np.sqrt(np.mean(np.square(off))) < 1.7
+
+
+def bar(angle_deg, length=15.0, breadth=1.6):
+    """Return where a bar lies whose middle is at 10.4 cm."""
+    cos, sin = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
+
+    def lies(x, y):
+        u, v = (x - 10.4) * cos - (y - 10.4) * sin, (x - 10.4) * sin + (y - 10.4) * cos
+        return (np.abs(u) <= 0.5 * length) & (np.abs(v) <= 0.5 * breadth)
+
+    return lies
+
+
+def test_a_bar_narrower_than_any_that_is_sought_is_not_held_to_that():
+    off = []
+    for seed in range(8):
+        (its,) = LocateObjects(kinds=["rectangle"])(
+            counts_of(bar(40 + seed), 16, 1.3, 1.0, seed)
+        ).shapes
+        off.append((its.breadth_cm - 1.6) / its.breadth_std_cm)
+    assert np.sqrt(np.mean(np.square(off))) < 1.5
+
+
+def test_a_least_size_that_is_told_holds():
+    image = counts_of(bar(40), 16, 1.3, 1.0, 0)
+    settings = SeveralSettings(smallest_cm=1.0)
+    (its,) = LocateObjects(kinds=["rectangle"], settings=settings)(image).shapes
+    assert its.breadth_cm > 1.95
+
+
+def test_a_ring_taken_for_several_objects_is_flagged():
+    found = []
+    for seed in range(8):
+
+        def lies(x, y, at=10.0 + 0.1 * seed):
+            far = np.hypot(x - at, y - 10.0)
+            return (far <= 4.0) & (far >= 2.9)
+
+        found.append(LocateObjects()(counts_of(lies, 16, 1.3, 1.0, seed)))
+    wrong = [its for its in found if its.count > 1]
+    assert wrong
+    assert not any(its.fits for its in wrong)
+
+
+def test_a_gap_that_is_told_stays():
+    lies = lambda x, y: np.hypot(x - 8.0, y - 9.0) <= 4.0  # noqa: E731
+    image = counts_of(lies, 32, 0.65, 0.5, 1)
+    (told,) = LocateObjects(kinds=["disc"], settings=SeveralSettings(gap_cm=0.15))(image).shapes
+    (wrong,) = LocateObjects(kinds=["disc"], settings=SeveralSettings(gap_cm=0.0))(image).shapes
+    assert told.radius_cm == pytest.approx(4.0, abs=0.02)
+    assert wrong.radius_cm < 3.97
+
+
 def test_nothing_above_the_noise_is_told():
     noise = np.random.default_rng(1).normal(0.0, 1e-3, (16, 16))
     with pytest.raises(Degenerate, match="noise"):
