@@ -24,6 +24,9 @@ from tactile_graph_likelihood.single.readings import Readings
 
 Name = Literal["disc", "ellipse", "rectangle"]
 
+FEW = 12.0
+"""Touched elements by which shapes are told apart half as well as their evidence says."""
+
 
 class Located(NamedTuple):
     """The likeliest shape, its probability among those asked for, and theirs."""
@@ -127,4 +130,4 @@ def probabilities(
         name: float(np.logaddexp.reduce(list(log_chances(its, shared, readings.touched).values())))
         for name, its in tops.items()
     }
-    return shares_by(logs, readings.touched)
+    return shares_by(logs, readings.touched, FEW)

@@ -39,9 +39,6 @@ SHARED_BY = 80
 LARGEST = 700.0
 """Of log odds."""
 
-FEW = 12.0
-"""Touched elements by which shapes are told apart half as well as their evidence says, or worse."""
-
 
 class Pattern(NamedTuple):
     """What an even face leaves over, in standard deviations, as in `GoodnessOfFit`."""
@@ -245,13 +242,13 @@ def log_mean(logs: Sequence[float], count: int) -> float:
     return top + math.log(sum(math.exp(log - top) for log in logs) / count)
 
 
-def shares_by(logs: Mapping[str, float], touched: int) -> dict[str, float]:
-    """Return probabilities whose logarithms, up to a constant, are given by so many elements.
+def shares_by(logs: Mapping[str, float], touched: int, few: float) -> dict[str, float]:
+    """Return probabilities whose logarithms, up to a constant, so many elements give.
 
     Evidence of few elements tells less than it says, since outlines among them are no normal
-    distributions: of ``n`` it is worth ``1 + (FEW / n)**1.5`` times less.
+    distributions: of n it is worth ``1 + (few / n)**2`` times less.
     """
-    top, worth = max(logs.values()), 1.0 / (1.0 + (FEW / max(touched, 1)) ** 1.5)
+    top, worth = max(logs.values()), 1.0 / (1.0 + (few / max(touched, 1)) ** 2)
     weights = {name: math.exp(worth * (log - top)) for name, log in logs.items()}
     total = sum(weights.values())
     return {name: weight / total for name, weight in weights.items()}

@@ -23,6 +23,9 @@ from tactile_graph_likelihood.single.likely import Likely, likely
 
 Name = Literal["disc", "ellipse", "rectangle", "polygon"]
 
+FEW = 8.0
+"""Touched elements by which shapes are told apart half as well as their evidence says."""
+
 CORNERS = (3, 5, 6)
 """Of a regular polygon, equally likely beforehand; four are a rectangle's."""
 
@@ -103,7 +106,7 @@ class ChooseShape:
         for name in dict.fromkeys(names):
             its = [log for log, owner in zip(logs, names, strict=True) if owner == name]
             evidence[name] = log_mean(its, len(its))
-        shares = shares_by(evidence, fits.readings.touched)
+        shares = shares_by(evidence, fits.readings.touched, FEW)
         shares = dict.fromkeys(Chosen._fields[3:], 0.0) | shares
         seen = {k for k, _ in fits.found}
         best = max(dict.fromkeys(names[k] for k in sorted(seen)), key=lambda name: evidence[name])

@@ -59,7 +59,7 @@ def test_the_object_pipeline_names_discs_and_rectangles():
 
 def test_few_elements_tell_less_than_their_evidence_says():
     logs = {"disc": 0.0, "ellipse": -3.0}
-    sure = [shares_by(logs, n)["disc"] for n in (0, 3, 12, 48, 10**6)]
+    sure = [shares_by(logs, n, 12.0)["disc"] for n in (0, 3, 12, 48, 10**6)]
     assert sure == sorted(sure)
     assert 0.5 < sure[0] < 0.6
     assert sure[2] == pytest.approx(1.0 / (1.0 + np.exp(-1.5)))
