@@ -80,7 +80,7 @@ class Score:
 class Difference:
     """A variant's absolute error less its reference's, on targets that both answered.
 
-    ``low`` and ``high`` bound the mean at ``level``; None where fewer than six frames tell.
+    ``low`` and ``high`` bound the mean at ``level``; None where fewer than six frames differ.
     Negative is better.
     """
 
