@@ -58,6 +58,13 @@ def test_paired_differences_take_only_what_both_answered():
     assert (got.low, got.verdict) == (None, "no clear difference")
 
 
+def test_where_nothing_was_answered_by_both_there_is_nothing_to_tell_apart():
+    one, other = (score_of(v, "radius", "cm", targets(e)) for v, e in
+                  (("b", [1.0, NAN]), ("a", [NAN, 1.0])))  # fmt: skip
+    got = difference_of(one, other, np.random.default_rng(0))
+    assert (got.n_both, got.mean, got.verdict) == (0, None, "none in common")
+
+
 def test_objects_of_one_frame_count_as_one_frame():
     """Two objects in a frame are no more independent than one."""
 
