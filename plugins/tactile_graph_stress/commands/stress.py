@@ -35,8 +35,8 @@ def stress(names: tuple[str, ...], quick: bool, seed: int, output: Path | None) 
     Name steps, plugins or kinds (circle, ellipse, rectangle, hull, orientation, points, mask,
     decouple, restore, image) to try only these. Errors are told in units of rounding times
     the conditioning of the case, against answers of 50 digits where there are such. The exit code
-    is 1 if something broke: NaN or infinity came out, a warning or an untyped error escaped, or an
-    answer was wrong.
+    is 1 if something broke: NaN or infinity came out, a warning or an untyped error escaped, the
+    input was written into, or an answer was wrong or another one the second time.
     """
     from tactile_graph.cli.interrupt import code_of, words_of
     from tactile_graph.cli.terminal import console
