@@ -8,7 +8,6 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.testing.same import same
 from tactile_graph.wires.frame import Frame
 
 PIECES = 40
@@ -64,7 +63,7 @@ def _cuts(run: Sequence[Frame], shortest: int) -> NDArray[np.bool_]:
     found, start = np.zeros(len(run), np.bool_), 0
     for i in range(len(run)):
         length = i - start
-        still = i > 0 and bool(run[i].truth) and same(run[i].truth, run[i - 1].truth)
+        still = i > 0 and bool(run[i].truth) and repr(run[i].truth) == repr(run[i - 1].truth)
         if i == 0 or (not still and length >= (longest if alike[i] else shortest)):
             found[i], start = True, i
     return found
