@@ -12,7 +12,7 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from tactile_graph import Circle, Degenerate, Points, Polygon, hookimpl
+from tactile_graph import Circle, Degenerate, Image, Points, Polygon, hookimpl
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph_stress.subject import Subject, subjects
 
@@ -118,6 +118,24 @@ def refuses(points: Points) -> Circle:
     raise ValueError("radius_cm: must be > 0")
 
 
+DRAWS = np.random.default_rng(0)
+
+
+def drawing(image: Image) -> Image:
+    """Draws without being given what to draw by."""
+    return image.with_values(image.values * DRAWS.random())
+
+
+def seeded(image: Image, *, rng: np.random.Generator) -> Image:
+    return image.with_values(image.values * rng.random())
+
+
+def halving(image: Image) -> Image:
+    image.values.setflags(write=True)
+    image.values[...] *= 0.5
+    return image.with_values(image.values.copy())
+
+
 def all_corners(points: Points) -> Polygon:
     """A hull that keeps every point."""
     return Polygon(np.array(points.xy_cm))
@@ -126,5 +144,6 @@ def all_corners(points: Points) -> Polygon:
 FAKES = registry_of(
     uncentred=uncentred, centred=centred, ordered=ordered, nan_out=nan_out, warns=warns,
     no_circle=no_circle, crashes=crashes, numpys_error=numpys_error, refuses=refuses,
-    hull=all_corners, aborts=aborts, hangs=hangs, isolated={"aborts": None, "hangs": 0.2},
+    drawing=drawing, seeded=seeded, halving=halving, hull=all_corners, aborts=aborts, hangs=hangs,
+    isolated={"aborts": None, "hangs": 0.2},
 )  # fmt: skip

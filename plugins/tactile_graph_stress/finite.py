@@ -25,17 +25,16 @@ def not_finite(value: Any) -> str:
 
 
 def numbers(value: Any, path: str) -> Iterator[tuple[str, Any]]:
-    """Yield all floats and arrays of a record, of those within it too, each with its path."""
+    """Yield all floats, arrays and masks in a record, of those within it too, with their paths."""
     if isinstance(value, (float, np.floating)):
         yield path, float(value)
     elif isinstance(value, np.ndarray):
         if value.dtype.kind == "f":
             yield path, value
-    elif isinstance(value, Image):
+    elif isinstance(value, (Image, Mask)):
         yield f"{path}.values", value.values
-        yield from _placed(value, path)
-    elif isinstance(value, Mask):
-        yield from _placed(value, path)
+        yield f"{path}.pitch_cm", np.asarray(value.pitch_cm, dtype=np.float64)
+        yield f"{path}.origin_cm", np.asarray(value.origin_cm, dtype=np.float64)
     elif isinstance(value, Points):
         yield f"{path}.xy_cm", value.xy_cm
     elif is_dataclass(value) and not isinstance(value, type):
@@ -46,8 +45,3 @@ def numbers(value: Any, path: str) -> Iterator[tuple[str, Any]]:
         names = getattr(value, "_fields", range(len(value)))
         for name, item in zip(names, value, strict=True):
             yield from numbers(item, f"{path}.{name}")
-
-
-def _placed(grid: Image | Mask, path: str) -> Iterator[tuple[str, Any]]:
-    yield f"{path}.pitch_cm", np.asarray(grid.pitch_cm, dtype=np.float64)
-    yield f"{path}.origin_cm", np.asarray(grid.origin_cm, dtype=np.float64)

@@ -12,11 +12,12 @@ from tactile_graph_stress import measure
 from tactile_graph_stress.affine import Affine, restored_values
 from tactile_graph_stress.answer import answer_of, half_extent, largest, off_by
 from tactile_graph_stress.case import Case, Given
+from tactile_graph_stress.finite import numbers
 from tactile_graph_stress.references.known import HULLS, reference_of
 from tactile_graph_stress.references.network import conductances
 from tactile_graph_stress.similarity import Similarity
 from tactile_graph_stress.subject import OWN_FRAME
-from tactile_graph_stress.trial import Trial
+from tactile_graph_stress.trial import Came, Trial
 from tactile_graph_stress.verdict import Outcome, Verdict
 
 Values = NDArray[np.float64]
@@ -24,6 +25,8 @@ Values = NDArray[np.float64]
 PROBE = 1e-6
 """Size of the changes, in extents, by which a step without a reference is asked how it moves."""
 PROBES = 6
+ROUNDING = 1e-9
+"""By so much of its largest number an answer may move where nothing but memory's layout differs."""
 
 
 class Judge:
@@ -41,17 +44,33 @@ class Judge:
         self._rng = rng
         self._reference = reference_of(trial.subject.name)
         self._bases: dict[bytes, tuple[Any, float]] = {}
+        self._run_twice: set[str] = set()
 
     def of(self, case: Case) -> Verdict:
         """Return the verdict on a case."""
         came = self.trial.run(case.given, case.settings)
         if came.broke:
             return Verdict(Outcome.BROKEN, note=came.broke)
+        if self._ends_otherwise(case, came):
+            told = "gives another answer the second time; what is kept, or random?"
+            return Verdict(Outcome.BROKEN, note=told)
         if came.gave_up:
             return Verdict(Outcome.GAVE_UP, note=came.gave_up)
         if case.must_refuse:
             return Verdict(Outcome.BROKEN, note="an answer from what is not finite")
         return self._measured(case, came.value)
+
+    def _ends_otherwise(self, case: Case, came: Came) -> bool:
+        """Return whether a step that does not draw ends otherwise when it is run again.
+
+        Asked of one case of each group, and of no step in a process apart: it starts anew anyway.
+        """
+        if self.trial.subject.signature.rng or self.trial.is_apart or case.group in self._run_twice:
+            return False
+        self._run_twice.add(case.group)
+        again = self.trial.anew(case.given, case.settings)
+        ends = [(bool(c.gave_up), bool(c.broke)) for c in (came, again)]
+        return ends[0] != ends[1] or not _alike(came.value, again.value)
 
     def _measured(self, case: Case, value: Any) -> Verdict:
         if "siemens" in case.facts:
@@ -144,3 +163,16 @@ def _places(given: Given) -> Values:
         return _array(given)
     left, right, bottom, top = given.extent_cm
     return np.array([(left, top), (right, bottom)])
+
+
+def _alike(one: Any, other: Any) -> bool:
+    """Return whether two answers have the same numbers and masks, but for rounding."""
+    if isinstance(one, (int, str)):
+        return bool(one == other)
+    mine, theirs = ([np.ravel(v) for _, v in numbers(x, "")] for x in (one, other))
+    if [v.size for v in mine] != [v.size for v in theirs]:
+        return False
+    if not mine:
+        return True
+    a, b = np.concatenate(mine), np.concatenate(theirs)
+    return np.allclose(a, b, rtol=ROUNDING, atol=ROUNDING * float(np.abs(a).max(initial=0.0)))

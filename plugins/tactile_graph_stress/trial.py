@@ -51,6 +51,11 @@ class Trial:
         Of steps that take randomness.
     registry : Registry, optional
         Where steps are looked up; the installed plugins if not given.
+
+    Attributes
+    ----------
+    is_apart : bool
+        Whether it has a process of its own.
     """
 
     def __init__(self, subject: Subject, seed: int = 0, registry: Registry | None = None) -> None:
@@ -59,16 +64,23 @@ class Trial:
         known = registry or installed()
         names = [subject.name, *subject.suppliers]
         small = _small(names, known)
-        self._is_apart = bool(small.plugins[0].offers["isolated"])
+        self.is_apart = bool(small.plugins[0].offers["isolated"])
         self._pipeline = loads(_text(subject), registry=small)
         self._runners: dict[str, Callable[[Frame], Result]] = {}
 
+    def anew(self, given: Given, settings: Mapping[str, Any] | None = None) -> Came:
+        """Return what comes of a case from the start, as if none had been run before."""
+        self._runners.clear()
+        return self.run(given, settings)
+
     def run(self, given: Given, settings: Mapping[str, Any] | None = None) -> Came:
         """Return what comes of a case; never raises."""
+        frame = _frame(given)
+        before = frame.image.values.tobytes()
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             try:
-                value = self._result(_frame(given), settings or {})[NODE]
+                value = self._result(frame, settings or {})[NODE]
             except PluginError as error:  # the step gave something else than it promises
                 came = Came(broke=str(error))
             except TactileGraphError as error:  # no value, or a rule of the frame or of a setting
@@ -80,6 +92,8 @@ class Trial:
             else:
                 bad = not_finite(value)
                 came = Came(broke=bad) if bad else Came(value=value)
+        if frame.image.values.tobytes() != before:
+            return Came(broke="writes into its input; change a copy")
         return Came(broke=f"warning escaped: {caught[0].message}") if caught else came
 
     def _result(self, frame: Frame, settings: Mapping[str, Any]) -> Result:
@@ -97,7 +111,7 @@ class Trial:
         key = repr(sorted(settings.items()))
         if key not in self._runners or self.subject.signature.stateful:
             pipeline = self._pipeline
-            if self._is_apart:
+            if self.is_apart:
                 self._runners.clear()  # each has a process
             if settings:
                 pipeline = pipeline.with_settings({f"{NODE}.{k}": v for k, v in settings.items()})

@@ -88,6 +88,35 @@ def without_seen(choosing: Sequence[Frame], held_out: Sequence[Frame]) -> list[F
     return left
 
 
+def without_repeats(frames: Sequence[Frame]) -> list[Frame]:
+    """Return frames less those whose image an earlier recording holds, too, as in a converted copy.
+
+    Frames where nothing lies may well be alike in two recordings, and stay.
+
+    Parameters
+    ----------
+    frames : sequence of Frame
+        Of one or more recordings, with their truth.
+
+    Raises
+    ------
+    UsageError
+        If a recording has none in which something lies but such.
+    """
+    first = {_values_of(f): f.label for f in reversed(frames) if f.truth}
+    left = [f for f in frames if not f.truth or first[_values_of(f)] == f.label]
+    alone = {f.label for f in left if f.truth}
+    for frame in frames:
+        if frame.truth and frame.label not in alone:
+            n = sum(bool(f.truth) for f in frames if f.label == frame.label)
+            raise UsageError(
+                f"{frame.label}: all {n} frames in which something lies have, value by value, the "
+                f"images of frames of {first[_values_of(frame)]}; of several recordings some "
+                "choose and the others report, so give each once"
+            )
+    return left
+
+
 def _values_of(frame: Frame) -> tuple[tuple[int, ...], bytes]:
     values = frame.image.values
     return values.shape, hashlib.blake2b(values.tobytes(), digest_size=16).digest()

@@ -134,6 +134,8 @@ def parse_free(text: str) -> Free:
     if ":" in given:
         return Free(name, _between(name, text, given.split(":")))
     listed = assignment("--free", f"{name}=[{given}]")[1]
+    if any(listed.count(v) > 1 for v in listed):
+        raise UsageError(f"--free {text}: a value stands there twice")
     return Free(name, tuple(listed))
 
 

@@ -13,7 +13,7 @@ from tactile_graph import Pipeline
 from tactile_graph.errors import UsageError, did_you_mean, one_of
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.score.answers import answers_of
-from tactile_graph_tune.apart import without_seen
+from tactile_graph_tune.apart import without_repeats, without_seen
 from tactile_graph_tune.choices.declared import Declared, Place, declared
 from tactile_graph_tune.request import Request
 from tactile_graph_tune.search.cascade import Cascade, Order, Predicted, bound
@@ -120,11 +120,15 @@ def searched(
     """Return what the search found; parameters and errors as of `tuner.tune`."""
     judged = _judged(request)
     given, apart = _known(frames, held_out)
+    n_given = len(given)
+    given = given if apart else without_repeats(given)
     other = without_seen(given, apart)
     every = [*given, *other]
     split = split_of(every, len(other), request.seed)
     if seen := len(apart) - len(other):
         split = split._replace(how=f"{split.how}, less {seen} of their frames that choose, too")
+    if twice := n_given - len(given):
+        split = split._replace(how=f"{split.how}, less {twice} frames that two of them hold")
     _check_objects(every, split)
     weights = weights_of(every, request.shares, (split.choosing, split.reporting))
     variants = _variants(

@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from tactile_graph.errors import UsageError
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.score.statistics import tail_of
+from tactile_graph_tune.stretches import pieces_of, stretches_of
 from tactile_graph_tune.table.kinds import Reals
 
 LEAST_FRAMES = 8
-BLOCKS = 40
-"""Stretches that a recording is cut into: frames next to each other stay on one side."""
+PIECES = 8
+"""Into so many a recording is cut whose stretches are too few to be told apart."""
+FEW = "though the scene hardly changes, so that all numbers look better and surer than they are"
 RESAMPLES = 2000
 
 
@@ -61,18 +63,34 @@ def split_of(frames: Sequence[Frame], n_apart: int, seed: int) -> Split:
             f"{n} frame{'s' if n != 1 else ''} with a known truth: half of them choose and the "
             f"others tell what came of it, so {LEAST_FRAMES} are needed at least"
         )
-    labels = [f.label for f in frames]
-    groups = _blocks(labels)
-    rows = np.arange(n)
+    if n_apart >= n:
+        raise UsageError("no frame with a known truth is left to choose by")
+    rows, first = np.arange(n), n - n_apart
+    groups = stretches_of(frames[:first])
     if n_apart:
-        if n_apart >= n:
-            raise UsageError("no frame with a known truth is left to choose by")
-        first, last = (_blocks(part) for part in (labels[: n - n_apart], labels[n - n_apart :]))
-        groups = np.concatenate([first, last + first.max() + 1])
-        return Split(rows[: n - n_apart], rows[n - n_apart :], groups, "recordings named for it")
-    chosen, several = _half(frames, groups, rows, np.random.default_rng([seed, 5]))
-    how = "recording by recording" if several else "by stretches of neighbouring frames"
+        groups = np.concatenate([groups, stretches_of(frames[first:]) + groups.max() + 1])
+
+    def sides() -> tuple[NDArray[np.bool_], bool]:
+        if n_apart:
+            return rows < first, True
+        return _half(frames, groups, rows, np.random.default_rng([seed, 5]))
+
+    chosen, several = sides()
+    of_recordings = "recordings named for it" if n_apart else "recording by recording"
+    how = of_recordings if several else "by stretches of neighbouring frames"
+    # Two to choose by and two to report on, since of one there is neither half nor interval.
+    told, least = (~chosen, 2) if several else (rows >= 0, 4)
+    pieces = pieces_of(frames, PIECES)
+    if _n_pressed(frames, groups, told) < min(least, _n_pressed(frames, pieces, told)):
+        groups, how = pieces, f"{how}, {FEW}"
+        chosen, _ = sides()
     return Split(rows[chosen], rows[~chosen], groups, how)
+
+
+def _n_pressed(frames: Sequence[Frame], groups: NDArray[np.int64], told: NDArray[np.bool_]) -> int:
+    """Return in how many of some frames' groups something lies; if in none, how many there are."""
+    pressed = told & np.array([bool(f.truth) for f in frames])
+    return len(np.unique(groups[pressed if pressed.any() else told]))
 
 
 def halves_of(frames: Sequence[Frame], split: Split, seed: int) -> list[NDArray[np.int64]]:
@@ -98,19 +116,6 @@ def _half(
     parts = labels if several else groups[rows]
     mixed = rng.permutation(np.unique(parts))
     return np.isin(parts, mixed[: (len(mixed) + 1) // 2]), several
-
-
-def _blocks(labels: Sequence[str]) -> NDArray[np.int64]:
-    """Return a number for each stretch of neighbouring frames of one recording."""
-    n = len(labels)
-    length = max(1, n // BLOCKS)
-    found = np.empty(n, np.int64)
-    number, start = -1, 0
-    for i in range(n):
-        if i == 0 or labels[i] != labels[i - 1] or i - start >= length:
-            number, start = number + 1, i
-        found[i] = number
-    return found
 
 
 class Interval(NamedTuple):

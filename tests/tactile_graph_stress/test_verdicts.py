@@ -8,7 +8,7 @@ import pytest
 from helpers_stress import FAKES, subject_of
 from tactile_graph import Image, Points
 from tactile_graph_stress.case import Case
-from tactile_graph_stress.judge import Judge
+from tactile_graph_stress.judge import Judge, _alike
 from tactile_graph_stress.scenes import arc, noisy
 from tactile_graph_stress.similarity import Similarity
 from tactile_graph_stress.study import stressed
@@ -42,6 +42,28 @@ def test_what_must_not_come_out_is_broken(name, note):
     found = verdict(name)
     assert found.outcome is Outcome.BROKEN
     assert note in found.note
+
+
+@pytest.mark.parametrize(
+    ("name", "note"),
+    [
+        ("drawing", "gives another answer the second time; what is kept, or random?"),
+        ("halving", "writes into its input; change a copy"),
+        ("seeded", ""),
+    ],
+)
+def test_what_hangs_on_other_runs_is_broken_and_a_seeded_draw_is_not(name, note):
+    found = judge(name).of(Case("truth", "", Image(np.ones((3, 3)))))
+    assert (found.outcome is Outcome.BROKEN, found.note) == (bool(note), note)
+
+
+def test_rounding_is_no_other_answer():
+    values = np.ones((3, 3))
+    moved = np.nextafter(values, 2.0)
+    assert _alike((Image(values), 1.0), (Image(moved), 1.0))
+    assert not _alike((Image(values), 1.0), (Image(moved), 1.1))
+    assert not _alike((1.0,), (1.0, 1.0))
+    assert not _alike("disc", "ring")
 
 
 def test_an_error_raised_for_people_is_a_typed_outcome():

@@ -12,7 +12,7 @@ import pytest
 from helpers_cli import call
 from helpers_tune import frames
 from tactile_graph.errors import UsageError
-from tactile_graph_tune.apart import check_recordings, without_seen
+from tactile_graph_tune.apart import check_recordings, without_repeats, without_seen
 
 
 @pytest.fixture
@@ -63,6 +63,22 @@ def test_of_a_converted_copy_the_frames_that_choose_are_left_out() -> None:
 def test_where_nothing_else_is_held_out_it_says_what_to_do() -> None:
     with pytest.raises(UsageError, match=r"all 8 frames .* are chosen by: name a recording of oth"):
         without_seen(frames(12), frames(12))
+
+
+def test_of_two_recordings_that_hold_a_frame_only_one_keeps_it() -> None:
+    one = [replace(f, label="one") for f in frames(12)]
+    fresh = [replace(f, image=f.image.with_values(f.image.values * 1.5)) for f in frames(6)]
+    two = [replace(f, label="two") for f in [*frames(6), *fresh]]
+    left = without_repeats([*one, *two])
+    assert left[:12] == one
+    assert left[12:] == [f for f in two if not f.truth or f in two[6:]]
+    assert without_repeats(frames(200))[199].index == 199  # in one recording they may recur
+
+
+def test_a_recording_of_which_another_holds_all_is_refused() -> None:
+    both = [replace(f, label=label) for label in ("one.npz", "two.npz") for f in frames(12)]
+    with pytest.raises(UsageError, match=r"two.npz: all 8 frames .* of one.npz; .* give each once"):
+        without_repeats(both)
 
 
 def test_the_command_refuses_it(hand_made: Path) -> None:

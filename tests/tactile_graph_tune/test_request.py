@@ -30,6 +30,12 @@ def test_what_is_neither_is_refused(text):
         parse_free(text)
 
 
+@pytest.mark.parametrize("text", ["a.b=0.005,0.005", "a.b=auto,1,auto"])
+def test_a_value_that_stands_there_twice_is_refused(text):
+    with pytest.raises(UsageError, match=f"--free {text}: a value stands there twice"):
+        parse_free(text)
+
+
 def test_too_many_values_are_refused_before_they_are_made():
     with pytest.raises(UsageError, match="1000000000000 combinations of values, at most 32"):
         parse_free("a.b=0:1:1000000000000")

@@ -30,3 +30,15 @@ def test_frames_held_out_that_choose_too_are_left_out_and_counted(hand_made):
     found = searched(request, given[:24], [*given[:6], *scaled], lambda what, n, of: None)
     assert found.how == "recordings named for it, less 4 of their frames that choose, too"
     assert len(found.split.reporting) == 26
+
+
+@pytest.mark.slow
+def test_frames_that_two_recordings_hold_are_taken_once_and_counted(hand_made):
+    given = frames(48, ("one", "two"))
+    again = [replace(f, label="two") for f in given[:6]]
+    scaled = [
+        replace(f, image=f.image.with_values(f.image.values * 1.5), label="two") for f in given[24:]
+    ]
+    request = Request(load("ladder.yaml"), rounds=1, fields=("load.total",))
+    found = searched(request, [*given[:24], *again, *scaled], [], lambda what, n, of: None)
+    assert found.how == "recording by recording, less 4 frames that two of them hold"

@@ -80,7 +80,7 @@ class Score:
 class Difference:
     """A variant's absolute error less its reference's, on targets that both answered.
 
-    ``low`` and ``high`` bound the mean at ``level``; None where fewer than six frames tell.
+    ``low`` and ``high`` bound the mean at ``level``; None where fewer than six frames differ.
     Negative is better.
     """
 
@@ -101,7 +101,12 @@ class Difference:
 
     @property
     def verdict(self) -> str:
-        """``better``, ``worse`` or ``no clear difference``: whether the interval leaves out 0."""
+        """``better``, ``worse`` or ``no clear difference``: whether the interval leaves out 0.
+
+        ``none in common`` where no target was answered by both.
+        """
+        if not self.n_both:
+            return "none in common"
         if self.low is not None and self.high is not None:
             if self.high < 0.0:
                 return "better"

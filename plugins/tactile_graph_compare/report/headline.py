@@ -68,7 +68,7 @@ def _verdict(comparison: Comparison, best: Score, n_scores: int) -> str:
         for d in comparison.differences
         if d.quantity == best.quantity and d.reference == best.variant
     ]
-    close = [d.variant for d in against if d.verdict != "worse"]
+    close = [d.variant for d in against if d.verdict in ("better", "no clear difference")]
     if close:
         return f"no clear difference from {_some(close)}"
     return ""
@@ -81,6 +81,8 @@ def _some(labels: list[str]) -> str:
 
 
 def _told(found: Difference, other: str) -> str:
+    if found.verdict == "none in common":
+        return f"no answer in common with {other}"
     if found.verdict == "no clear difference":
         return f"no clear difference from {other}"
     return f"clearly {found.verdict} than {other}"

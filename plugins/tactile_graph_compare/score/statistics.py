@@ -17,7 +17,9 @@ LEVEL = 0.95
 Z = 1.959963984540054
 """The normal distribution's 97.5 % point: half of what lies outside `LEVEL` on either side."""
 LEAST_FRAMES = 6
-"""From so many on bounds are told: fewer are all of one sign by chance too often."""
+"""That differ; from so many on bounds are told: fewer are all of one sign by chance too often."""
+DIFFERS = 1e-9
+"""What is no farther from 0, in any unit, is rounding."""
 RESAMPLES = 2000
 MOST_RESAMPLED = 2000
 """Frames up to which means are resampled; beyond, they are normal for all that matters here."""
@@ -90,33 +92,41 @@ class Interval(NamedTuple):
     method: str
 
 
-def mean_interval(values: Reals, rng: np.random.Generator) -> Interval:
-    """Return the mean of values, one a frame, and its interval.
+def mean_interval(
+    values: Reals, rng: np.random.Generator, counts: NDArray[np.int64] | None = None
+) -> Interval:
+    """Return the mean of differences, and its interval over frames.
 
     Parameters
     ----------
     values : ndarray of float64, shape (n,)
-        At least one.
+        The sum of each frame's. At least one.
     rng : Generator
         Draws the resamples.
+    counts : ndarray of int64, shape (n,), optional
+        Of how many each sum is, 1 if not given.
 
     Notes
     -----
-    Up to `MOST_RESAMPLED` values the percentile bootstrap over them (Efron 1979,
+    Up to `MOST_RESAMPLED` frames the percentile bootstrap over them (Efron 1979,
     10.1214/aos/1176344552), expanded as few values need it (`tail_of`), beyond it the normal
-    distribution; below `LEAST_FRAMES` no bounds. Both take the frames as independent; frames of
-    one slow scene are not, and the interval is then too narrow.
+    distribution; where fewer than `LEAST_FRAMES` differ from 0, no bounds. Both take the frames as
+    independent; frames of one slow scene are not, and the interval is then too narrow.
     """
-    mean = float(values.mean())
     n = values.size
-    if n > MOST_RESAMPLED:
-        half = Z * float(values.std(ddof=1)) / np.sqrt(n)
-        return Interval(mean, mean - half, mean + half, "normal over frames")
+    counts = np.ones(n, np.int64) if counts is None else counts
+    mean = float(values.sum() / counts.sum())
     if n < LEAST_FRAMES:
         return Interval(mean, None, None, f"no bounds below {LEAST_FRAMES} frames")
+    if np.count_nonzero(np.abs(values) > DIFFERS) < LEAST_FRAMES:
+        return Interval(mean, None, None, f"no bounds below {LEAST_FRAMES} frames that differ")
+    if n > MOST_RESAMPLED:
+        half = Z * float((values - mean * counts).std(ddof=1)) * np.sqrt(n) / int(counts.sum())
+        return Interval(mean, mean - half, mean + half, "normal over frames")
     means = np.empty(RESAMPLES)
     for start in range(0, RESAMPLES, 250):  # in parts: all at once would take n times 16 kB
-        means[start : start + 250] = values[rng.integers(0, n, (250, n))].mean(axis=1)
+        drawn = rng.integers(0, n, (250, n))
+        means[start : start + 250] = values[drawn].sum(axis=1) / counts[drawn].sum(axis=1)
     tail = tail_of(n)
     low, high = np.percentile(means, (tail, 100.0 - tail))
     return Interval(mean, float(low), float(high), "bootstrap over frames")
@@ -145,7 +155,10 @@ def tail_of(n: int) -> float:
 
 
 def difference_of(one: Score, reference: Score, rng: np.random.Generator) -> Difference:
-    """Return how much farther off a variant is than its reference, where both answered."""
+    """Return how much farther off a variant is than its reference, where both answered.
+
+    Objects of one frame are no more independent than one, so frames are resampled with all theirs.
+    """
     mine, theirs = _answered(one), _answered(reference)
     both = sorted(mine.keys() & theirs.keys())
     by_frame: dict[int, list[float]] = {}
@@ -153,7 +166,8 @@ def difference_of(one: Score, reference: Score, rng: np.random.Generator) -> Dif
         by_frame.setdefault(key[0], []).append(mine[key] - theirs[key])
     found = None
     if both:
-        found = mean_interval(np.array([np.mean(v) for v in by_frame.values()]), rng)
+        sums, counts = zip(*((sum(v), len(v)) for v in by_frame.values()), strict=True)
+        found = mean_interval(np.array(sums), rng, np.array(counts))
     return Difference(
         one.variant,
         reference.variant,

@@ -15,6 +15,7 @@ from tactile_graph.cli.say import say
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from tactile_graph.plugins.registry import Registry
     from tactile_graph_stress.study import Row
     from tactile_graph_stress.subject import Left, Subject
 
@@ -34,8 +35,8 @@ def stress(names: tuple[str, ...], quick: bool, seed: int, output: Path | None) 
     Name steps, plugins or kinds (circle, ellipse, rectangle, hull, orientation, points, mask,
     decouple, restore, image) to try only these. Errors are told in units of rounding times
     the conditioning of the case, against answers of 50 digits where there are such. The exit code
-    is 1 if something broke: NaN or infinity came out, a warning or an untyped error escaped, or an
-    answer was wrong.
+    is 1 if something broke: NaN or infinity came out, a warning or an untyped error escaped, the
+    input was written into, or an answer was wrong or another one the second time.
     """
     from tactile_graph.cli.interrupt import code_of, words_of
     from tactile_graph.cli.terminal import console
@@ -50,8 +51,9 @@ def stress(names: tuple[str, ...], quick: bool, seed: int, output: Path | None) 
         raise UsageError(f"--seed must be >= 0, got {seed}")
     if output is not None:
         check_ending(output)
-    found, apart = subjects(installed())
-    wanted, left = chosen(found, names, apart)
+    registry = installed()
+    found, apart = subjects(registry)
+    wanted, left = chosen(found, _of_packages(names, registry), apart)
     rows, n, ended = _rows(wanted, left, seed, quick, console(stderr=True))
     if left and not rows and ended is None:
         raise UsageError("\n".join(dict.fromkeys(map(str, left))))
@@ -67,6 +69,15 @@ def stress(names: tuple[str, ...], quick: bool, seed: int, output: Path | None) 
         click.get_current_context().exit(code_of(ended))
     if any(r.verdict.outcome.name == "BROKEN" for r in rows):
         click.get_current_context().exit(1)
+
+
+def _of_packages(names: tuple[str, ...], registry: Registry) -> tuple[str, ...]:
+    """Return the names, those of packages as those of their plugins that have steps."""
+    held: dict[str, list[str]] = {}
+    for plugin in registry.plugins:
+        if plugin.offers.get("steps"):
+            held.setdefault(plugin.package, []).append(plugin.name)
+    return tuple(one for name in names for one in held.get(name, [name]))
 
 
 def _rows(

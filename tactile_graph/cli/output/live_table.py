@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,8 @@ from tactile_graph.foreign_text import visible
 GAP = "  "
 ERRORS = "error"
 LONGEST_LABEL = 32
+STAY = ("name", "kind", "probability")
+"""Fields of an output that give way last: what it is, and how surely."""
 DECIMALS = {"cm": 3, "°": 1, "s": 3, "ms": 2, "µs": 1}
 
 
@@ -95,21 +98,32 @@ class LiveTable:
             self.lead[-1].width = min(LONGEST_LABEL, max(len("label"), cell_len(frame.label)))
         known = frame.truth is not None
         self.blocks = [_block(o, errors=known and bool(o.errors)) for o in outputs]
-        self.hidden = self._fit()
+        self.hidden = self._fit(first)
         self._failed: dict[str, tuple[str, int]] = {}
         self._head()
 
-    def _fit(self) -> list[Column]:
-        """Take columns for which the terminal has no room from the outputs that have most."""
+    def _fit(self, first: Result) -> list[Column]:
+        """Take columns for which the terminal has no room from the outputs that have most.
+
+        Those go first that are empty in the first row.
+        """
+        columns = [c.column for b in self.blocks for c in b.all]
+        empty = {c.key for b in self.blocks for c in _empty(first, b.output)}
+
+        def rank(cells: list[_Cell], at: int) -> tuple[bool, bool, int]:
+            column = cells[at].column
+            return column.key in empty, column.field not in STAY, at
+
         hidden: list[Column] = []
         while self.blocks and self._width() > self.console.width:
             widest = max(reversed(self.blocks), key=lambda b: len(b.all))
             cells = widest.errors if len(widest.cells) == 1 and widest.errors else widest.cells
-            hidden.insert(0, cells.pop().column)
+            last = max(range(len(cells)), key=partial(rank, cells))
+            hidden.append(cells.pop(last).column)
             self.blocks = [b for b in self.blocks if b.cells]
             for block in self.blocks:
                 _widen(block.cells, block.name)
-        return hidden
+        return sorted(hidden, key=columns.index)
 
     def _width(self) -> int:
         return _width(self.lead) + sum(b.width + len(GAP) for b in self.blocks)
@@ -178,6 +192,14 @@ def _block(output: OutputColumns, errors: bool) -> _Block:
     if errors:
         block.errors = [_cell(c) for c in output.errors]
     return block
+
+
+def _empty(result: Result, output: OutputColumns) -> list[Column]:
+    """Return the columns of an output's value that it leaves empty; none where it has no value."""
+    if result.outcome(output.output).__class__ in NO_VALUE:
+        return []
+    values = values_of(result, output)
+    return [c for c in output.values if values.get(c.key) is None]
 
 
 def _widen(cells: list[_Cell], name: str) -> None:

@@ -58,6 +58,13 @@ def test_paired_differences_take_only_what_both_answered():
     assert (got.low, got.verdict) == (None, "no clear difference")
 
 
+def test_where_nothing_was_answered_by_both_there_is_nothing_to_tell_apart():
+    one, other = (score_of(v, "radius", "cm", targets(e)) for v, e in
+                  (("b", [1.0, NAN]), ("a", [NAN, 1.0])))  # fmt: skip
+    got = difference_of(one, other, np.random.default_rng(0))
+    assert (got.n_both, got.mean, got.verdict) == (0, None, "none in common")
+
+
 def test_objects_of_one_frame_count_as_one_frame():
     """Two objects in a frame are no more independent than one."""
 
@@ -69,6 +76,35 @@ def test_objects_of_one_frame_count_as_one_frame():
 
     got = difference_of(score("b", [2.0, 4.0]), score("a", [1.0, 1.0]), np.random.default_rng(0))
     assert (got.mean, got.low, got.high, got.n_both) == (2.0, None, None, 2)
+
+
+@pytest.mark.parametrize("many", [1, 400])
+def test_a_paired_mean_is_over_objects_as_the_scores_are(many: int):
+    """Better in many frames of one object, worse in fewer of six, with more objects in all."""
+    mine, theirs = QuantityErrors(), QuantityErrors()
+    for frame in range(18 * many):
+        few = frame % 18 < 12
+        for number in range(1 if few else 6):
+            mine.add(frame, number, 0.4 if few else 0.6)
+            theirs.add(frame, number, 0.5)
+    one, other = (score_of(v, "radius", "cm", found) for v, found in (("b", mine), ("a", theirs)))
+    got = difference_of(one, other, np.random.default_rng(0))
+    assert got.mean == pytest.approx(one.mean - other.mean)
+    assert got.low < got.mean < got.high
+    if many > 1:  # by hand: sums of -0.1 and 0.6 a frame, less the mean of 0.05 an object
+        scatter = np.sqrt((12 * 0.15**2 + 6 * 0.3**2) / 18) / (8 / 3)
+        assert got.high - got.mean == pytest.approx(1.96 * scatter / np.sqrt(18 * many), rel=1e-3)
+
+
+@pytest.mark.parametrize(("n", "method"), [
+    (5, "no bounds below 6 frames that differ"), (6, "bootstrap over frames"),
+])  # fmt: skip
+def test_frames_in_which_nothing_differs_tell_no_verdict(n: int, method: str):
+    values = np.zeros(200)
+    values[:n] = 1.0
+    values[n:] = 1e-16
+    got = mean_interval(values, np.random.default_rng(0))
+    assert (got.method, got.low is None) == (method, n < 6)
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import installed
-from tactile_graph_stress.commands.stress import stress
+from tactile_graph_stress.commands.stress import _of_packages, stress
 from tactile_graph_stress.report.markdown import markdown
 from tactile_graph_stress.report.table import troubles
 from tactile_graph_stress.study import Row
@@ -141,6 +141,13 @@ def test_of_a_plugin_it_says_how_many_steps_are_not_stressed_and_how_to_read_why
     assert result.exit_code == 0
     told = "1 step is not stressed; name one to read why: tactile-graph stress simplify_polygon"
     assert told in result.stderr.splitlines()
+
+
+def test_a_package_stands_for_its_plugins_that_have_steps():
+    names = _of_packages(("tactile-graph", "icm"), installed())
+    assert {"mrf", "hull"} <= set(names)
+    assert "compare" not in names
+    assert names[-1] == "icm"
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Generator, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -58,7 +58,7 @@ def with_truth(
     Frames are counted as they stand in the recording (`Frame.place`), so that one which was left
     out, by ``skip`` too, keeps its number; what may surprise about that is told on stderr. So is,
     at the end or when this is closed, of how many frames the recording held a truth, and which
-    objects lie wholly off the pad.
+    objects lie wholly off the pad, or are another one again, which are left out.
 
     Parameters
     ----------
@@ -79,22 +79,22 @@ def with_truth(
     DataError
         If the file cannot be understood, speaks of frames that are not there, or may mean others.
     """
-    replaced, off = _Replaced(), _Off()
+    replaced, objects = _Replaced(), _Objects()
     kept = replaced.watch(frames)
     if path.suffix.lower() == ".json":
-        attached = _by_list(kept, _listed(path), path, report, off)
+        attached = _by_list(kept, _listed(path), path, report, objects)
     else:
-        attached = _by_spans(kept, _spans(path), path, report, off)
+        attached = _by_spans(kept, _spans(path), path, report, objects)
     try:
         for frame in attached:
             replaced.n_unknown += replaced.was_known and frame.truth is None
             yield frame
     except GeneratorExit:  # who takes them has enough
         replaced.tell(str(path))
-        off.tell(str(path))
+        objects.tell(str(path))
         raise
     replaced.tell(str(path))
-    off.tell(str(path))
+    objects.tell(str(path))
 
 
 class _Replaced:
@@ -117,15 +117,27 @@ class _Replaced:
             tell(told + of_it)
 
 
-class _Off:
-    """Notes which objects of a file lie wholly off the pad."""
+class _Objects:
+    """Notes which objects of a file lie wholly off the pad, and which are another one again."""
 
     def __init__(self) -> None:
         self._seen: set[tuple[_Where, _Extent]] = set()
         self._off: dict[_Where, tuple[float, float, _Extent]] = {}
+        self._again: dict[_Where, _Where] = {}
 
-    def see(self, where: _Where, lies: TrueObject, image: Image) -> None:
-        """Look at an object, by its line or its frame and number, and the pad it is to lie on."""
+    def of(
+        self, objects: Iterable[tuple[_Where, TrueObject]], image: Image
+    ) -> tuple[TrueObject, ...]:
+        """Return the objects of a frame, each by its line or its frame and number, once each."""
+        found: dict[tuple[object, str], tuple[_Where, TrueObject]] = {}
+        for where, lies in objects:
+            self._see(where, lies, image)
+            first, _ = found.setdefault((lies.shape, lies.name), (where, lies))
+            if first != where:
+                self._again.setdefault(where, first)
+        return tuple(lies for _, lies in found.values())
+
+    def _see(self, where: _Where, lies: TrueObject, image: Image) -> None:
         extent_cm, shape = image.extent_cm, lies.shape
         if (where, extent_cm) in self._seen or not isinstance(shape, Shape):
             return
@@ -134,18 +146,29 @@ class _Off:
             self._off.setdefault(where, (shape.x_cm, shape.y_cm, extent_cm))
 
     def tell(self, path: str) -> None:
+        """Tell of both kinds how many there are, and which is the first."""
+        if self._again:
+            n, (where, first) = len(self._again), min(self._again.items())
+            are = "s are others" if n != 1 else " is another one"
+            tell(
+                f"{path}: {n} object{are} again, of the same kind, place, size and name, and left "
+                f"out, first that of {_named(where)}, which is that of {_named(first)}"
+            )
         if not self._off:
             return
         n, n_off = len({where for where, _ in self._seen}), len(self._off)
         where, (x, y, (left, right, bottom, top)) = min(self._off.items())
-        named = "line {}" if len(where) == 1 else "frame {}, object {}"
         in_mm = left <= 0.1 * x <= right and top <= 0.1 * y <= bottom
         tell(
             f"{path}: {n_off} of {n} object{'s' if n != 1 else ''} lie{'s' if n_off == 1 else ''} "
             f"wholly off the pad of {right - left:g} by {bottom - top:g} cm, first that "
-            f"of {named.format(*where)} at x {x:g}, y {y:g} cm; lengths are cm from the pad's top "
+            f"of {_named(where)} at x {x:g}, y {y:g} cm; lengths are cm from the pad's top "
             f"left corner, x to the right, y down{': are these mm?' if in_mm else ''}"
         )
+
+
+def _named(where: _Where) -> str:
+    return ("line {}" if len(where) == 1 else "frame {}, object {}").format(*where)
 
 
 def _frames(n: int) -> str:
@@ -171,16 +194,21 @@ def _listed(path: Path) -> list[Truth]:
 
 
 def _by_list(
-    frames: Iterator[Frame], truths: list[Truth], path: Path, report: Report | None, off: _Off
+    frames: Iterator[Frame],
+    truths: list[Truth],
+    path: Path,
+    report: Report | None,
+    objects: _Objects,
 ) -> Iterator[Frame]:
     counting, n = Counting(str(path), "places"), len(truths)
     for frame in frames:
         place = counting.of(frame)
         if place >= n:
             raise DataError(str(path), f"holds the truth of {n} frames, there are more")
-        for j, o in enumerate(truths[place] or ()):
-            off.see((place, j), o, frame.image)
-        yield replace(frame, truth=truths[place])
+        truth = truths[place]
+        if truth is not None:
+            truth = objects.of((((place, j), o) for j, o in enumerate(truth)), frame.image)
+        yield replace(frame, truth=truth)
     held = _n_places(counting, report)
     if n != held:
         way_out = (
@@ -192,17 +220,15 @@ def _by_list(
 
 
 def _by_spans(
-    frames: Iterator[Frame], table: _Table, path: Path, report: Report | None, off: _Off
+    frames: Iterator[Frame], table: _Table, path: Path, report: Report | None, objects: _Objects
 ) -> Iterator[Frame]:
     counting, spans = Counting(str(path), table.by), table.spans
     beyond = max((said.span.stop - 1 for said in spans if said.span is not None), default=-1)
     for frame in frames:
         number = counting.of(frame) if beyond >= 0 else 0
         about = [said for said in spans if said.span is None or number in said.span]
-        for said in about:
-            if said.lies is not None:
-                off.see((said.line,), said.lies, frame.image)
-        known = tuple(said.lies for said in about if said.lies is not None)
+        lies = (((said.line,), said.lies) for said in about if said.lies is not None)
+        known = objects.of(lies, frame.image)
         yield replace(frame, truth=known if about else None)
     if beyond < 0:
         return

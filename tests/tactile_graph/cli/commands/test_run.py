@@ -13,6 +13,8 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +24,7 @@ from rich.console import Console
 from helpers_cli import DISCS, broken_plugin, call, install
 from tactile_graph import Frame, Mask, load
 from tactile_graph.cli.output.live_table import LiveTable
-from tactile_graph.engine.tables.columns import columns_of
+from tactile_graph.engine.tables.columns import Column, columns_of
 
 pytestmark = pytest.mark.usefixtures("hand_made")
 
@@ -66,6 +68,28 @@ def test_times_that_count_from_long_ago_still_tell_frames_apart():
     assert [row.split()[1] for row in rows] == ["12452.031", "12452.061"]
     end = rows[0].index("12452.031") + len("12452.031")
     assert end == names.index("time") + len("time") == units.index("s") + 1
+
+
+@pytest.mark.parametrize(
+    ("width", "kept"),
+    [
+        (70, ["long", "x", "y", "radius", "probability"]),
+        (54, ["x", "y", "radius", "probability"]),
+        (36, ["x", "probability"]),
+    ],
+)
+def test_what_is_empty_gives_way_first_and_what_it_is_last(width: int, kept: list[str]):
+    pipeline = load("discs")
+    result = next(iter(pipeline.stream(islice(pipeline.frames(), 1))))
+    (circle,) = columns_of(pipeline, ("circle",))
+    empty = Column("circle.long_cm", "circle", "long", "cm", float)
+    sure = Column("circle.radius_cm", "circle", "probability", "", float)
+    columns = replace(circle, values=(empty, *circle.values, sure), errors=())
+    out = io.StringIO()
+    table = LiveTable(Console(file=out, width=width), [columns], result)
+    shown = [c.column.field for c in table.blocks[0].cells]
+    assert shown == kept
+    assert [c for c in columns.values if c.field not in kept] == table.hidden
 
 
 def test_a_frame_without_an_output_says_why_and_the_run_goes_on():

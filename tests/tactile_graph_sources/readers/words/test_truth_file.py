@@ -83,6 +83,25 @@ def test_objects_wholly_off_the_pad_are_counted_the_first_named(
     assert not capsys.readouterr().err
 
 
+def test_an_object_given_twice_counts_once_and_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table, listed = tmp_path / "truth.csv", tmp_path / "truth.json"
+    table.write_text(f"{CIRCLE},name\n0-1,circle,1,2,3,\nall,circle,1,2,3\n1,circle,1,2,3,lid\n")
+    cup, lid = TrueObject(Circle(1.0, 2.0, 3.0)), TrueObject(Circle(1.0, 2.0, 3.0), None, "lid")
+    assert [f.truth for f in with_truth(frames(3), table)] == [(cup,), (cup, lid), (cup,)]
+    assert "truth.csv: 1 object is another one again, of the same" in (err := readerr(capsys))
+    assert err.endswith("first that of line 3, which is that of line 2")
+    listed.write_text(truth_to_json([(cup, lid, cup), (cup, cup), None]))
+    assert [f.truth for f in with_truth(frames(3), listed)] == [(cup, lid), (cup,), None]
+    assert "2 objects are others again" in (err := readerr(capsys))
+    assert err.endswith("that of frame 0, object 2, which is that of frame 0, object 0")
+
+
+def readerr(capsys: pytest.CaptureFixture[str]) -> str:
+    return capsys.readouterr().err.rstrip()
+
+
 def test_all_is_every_frame(tmp_path: Path) -> None:
     path = tmp_path / "truth.csv"
     path.write_text(
