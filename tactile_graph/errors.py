@@ -128,6 +128,23 @@ def text_of(error: BaseException) -> str:
         return ""
 
 
+def without(module: str, error: ImportError, missing: str) -> str:
+    """Return what is to be said where a library of an extra cannot be imported.
+
+    Parameters
+    ----------
+    module : str
+        What was imported.
+    error : ImportError
+    missing : str
+        The text where the library is not there; one that is there and fails is told by its error.
+    """
+    head = module.partition(".")[0]
+    if isinstance(error, ModuleNotFoundError) and (error.name or "").partition(".")[0] == head:
+        return missing
+    return f"{missing}; it is installed, but cannot be imported: {text_of(error)}"
+
+
 def key_typo(got: str, allowed: Iterable[str]) -> str:
     """Return what is wrong between a key and its value, which YAML then takes for one key."""
     names = set(allowed)

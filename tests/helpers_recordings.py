@@ -241,7 +241,7 @@ def popu_bed_text(values: NDArray[np.int64]) -> str:
 
 def npz_bytes(**arrays: Any) -> bytes:
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, allow_pickle=False, **arrays)
+    np.savez_compressed(buffer, **arrays)
     return buffer.getvalue()
 
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from tactile_graph.api.result import Result
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import UsageError, without
 from tactile_graph.pipeline.graph import Graph
 
 if TYPE_CHECKING:
     import pandas as pd
 
-MISSING = "to_pandas needs pandas, which is not installed: pip install pandas"
+MISSING = "to_pandas needs pandas: pip install pandas"
 
 
 class Results(Iterator[Result]):
@@ -104,8 +104,8 @@ class Results(Iterator[Result]):
             raise UsageError("the stream was closed; pipeline.stream() makes a new one")
         try:
             import pandas as pd
-        except ImportError:
-            raise UsageError(MISSING) from None
+        except ImportError as error:
+            raise UsageError(without("pandas", error, MISSING)) from error
         from tactile_graph.engine.tables.table import make_table, units_of
 
         table = make_table(self._pipeline, self._asked, long)

@@ -56,7 +56,11 @@ def entry(loops: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _numbas_own(loops: Callable[..., Any]) -> Dispatcher:
-    return numba.njit(cache=True, error_model="numpy", nogil=True)(loops)
+    from tactile_graph.compiled.kept import Kept, kept
+
+    dispatcher = numba.njit(error_model="numpy", nogil=True)(loops)
+    dispatcher._cache = kept(Kept, loops)  # type: ignore[attr-defined]
+    return dispatcher
 
 
 def entry_point(entry: Any, args: tuple[Any, ...]) -> Callable[..., Any]:
@@ -82,9 +86,10 @@ def make_ahead(loops: Callable[..., Any], arguments: tuple[types.Type, ...]) -> 
 def on_disk(entry: Any, arguments: tuple[types.Type, ...]) -> bool:
     """Return whether an entry's machine code for types of arguments is there to be loaded.
 
-    Under a version of numba that this was not tried with nobody knows, and it is as if it were.
+    Under a version of numba that this was not tried with nobody knows, and where no code is kept
+    nobody else can make it: it is as if it were.
     """
-    return entry.on_disk(arguments) if whole() else True
+    return not whole() or not entry.is_kept or entry.on_disk(arguments)
 
 
 class Callee:

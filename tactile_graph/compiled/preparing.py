@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
+from tactile_graph.foreign_text import tell
+
 WORTH_A_LINE_S = 1.0
 REDRAW_S = 0.1
 NEXT_LINE_S = 5.0
@@ -69,12 +71,15 @@ class Preparing:
         Whether another process compiles meanwhile.
     n_made : int
         How often machine code was made or loaded so far, by whoever asked for it.
+    not_kept : str
+        What is to be said of machine code that could not be kept on disk; "" where all was.
     """
 
     def __init__(self) -> None:
         self.on_first: Callable[[], None] | None = None
         self.helped = False
         self.n_made = 0
+        self.not_kept = ""
         self._name = ""
         self._total = 0
         self._done: set[int] = set()
@@ -137,6 +142,19 @@ class Preparing:
                 f"plain code answers while another process compiles {name}, "
                 f"once on this machine, {since_s:.0f} s"
             )
+
+    def unkept(self, why: str) -> None:
+        """Note that machine code could not be kept on disk, and why; a command says so once."""
+        first, self.not_kept = (
+            not self.not_kept,
+            (
+                f"machine code cannot be kept for the next time ({why}); "
+                "set NUMBA_CACHE_DIR to a folder that takes it"
+            ),
+        )
+        if first and _tellers:
+            _tellers[-1](None)
+            tell(f"hint: {self.not_kept}")
 
     def all_told(self) -> None:
         """Take the line away."""

@@ -3,36 +3,29 @@
 from __future__ import annotations
 
 import gc
-import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 from numba.core import sigutils
-from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.codegen import CodeLibrary, JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
 from numba.core.compiler_lock import global_compiler_lock
-from numba.core.registry import CPUDispatcher, cpu_target
-from numba.core.runtime import rtsys
+from numba.core.registry import CPUDispatcher
 
 from tactile_graph.compiled.counted import are_its_own, taken_in
 from tactile_graph.compiled.given_back import given_back_by_c
+from tactile_graph.compiled.kept import ClaimedError, EntryCache, Unkept, kept
 from tactile_graph.compiled.looked_at import arrays_looked_at
 from tactile_graph.compiled.numbas_own import made_parts
 from tactile_graph.compiled.preparing import preparing
 from tactile_graph.compiled.reach import Reach
-from tactile_graph.locks import Lock
 
 OPTIONS = {"nopython": True, "boundscheck": None, "error_model": "numpy", "nogil": True}
 """Machine code lets other threads of Python run: the one that reads a pad must not wait for it."""
 
-MADE = "arrays and their byte order looked at, given back by C, counted without a lock"
+MADE = "arrays and their byte order looked at, given back by C, counted without a lock, sealed"
 """How entries are made, beside numba's version: machine code made otherwise is made anew."""
-POLL_S = 0.02
-"""Between two looks whether another process has finished."""
 
 _entries = 0
 _taken_in = False
@@ -226,83 +219,15 @@ class PartDispatcher(CPUDispatcher):
         return key
 
 
-class ClaimedError(Exception):
-    """Another process makes this machine code just now."""
-
-
-class EntryCache(FunctionCache):
-    """An entry's machine code on disk, outdated by a change of anything it is made of."""
-
-    def __init__(self, loops: Callable[..., Any]) -> None:
-        super().__init__(loops)
-        name = f"{self._impl.filename_base}.whole"
-        made_of = f"{Reach(loops).digest} {sorted(OPTIONS.items(), key=str)} {MADE}"
-        self._cache_file = IndexDataCacheFile(self.cache_path, name, made_of)
-        self._name = loops.__name__
-        self.waits = True
-        self._claim = Lock(Path(self.cache_path, f"{name}.lock"))
-
-    def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
-        """Return what is on disk for a signature, None if nothing is and it is ours to make.
-
-        While another process makes the machine code of these loops, its end is waited for.
-
-        numba alone gets ready to compile first: it imports how each function is lowered, and
-        scipy's linear algebra, which takes longer than to load the code. The compiler does so
-        itself when nothing is found. Loaded code needs the symbols of numba's runtime only, and
-        of its hashing.
-        """
-        import_module("numba.cpython.hashing")
-        rtsys.initialize(target_context)
-        found = self._on_disk(sig, target_context)
-        if found is None and self._claimed():
-            return self._on_disk(sig, target_context)  # another may have made it just now
-        return found
-
-    def holds(self, args: tuple[Any, ...]) -> bool:
-        """Return whether the code for types of arguments is there, without loading it."""
-        key = self._index_key(args, cpu_target.target_context.codegen())
-        with self._guard_against_spurious_io_errors():
-            return key in self._cache_file._load_index()
-        return False
-
-    def _on_disk(self, sig: Any, target_context: Any) -> CompileResult | None:
-        with self._guard_against_spurious_io_errors():
-            found: CompileResult | None = self._load_overload(sig, target_context)
-        return found
-
-    def _claimed(self) -> bool:
-        """Wait until no other process makes these loops; return whether others now wait for us.
-
-        Where the folder knows no locks, two may make the same, as numba alone would.
-
-        Raises
-        ------
-        ClaimedError
-            In place of waiting, where `waits` is False.
-        """
-        try:
-            if self._claim.take():
-                return True
-            if not self.waits:
-                raise ClaimedError
-            with preparing.elsewhere(self._name) as tell:
-                while not self._claim.take():
-                    time.sleep(POLL_S)
-                    tell()
-        except OSError:
-            return False
-        return True
-
-    def let_go(self) -> None:
-        """Say that these loops are made, or could not be."""
-        self._claim.release()
-
-
 class EntryDispatcher(CPUDispatcher):
     """The machine code of an entry by the types of its arguments."""
 
-    _cache: EntryCache
+    _cache: EntryCache | Unkept
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether the machine code is kept on disk, where other processes find it."""
+        return self._cache.is_kept
 
     def compile(self, sig: Any) -> Any:
         """Return the machine code for a signature, from disk if it is there or comes there."""
@@ -330,7 +255,8 @@ class EntryDispatcher(CPUDispatcher):
 def entry_of(loops: Callable[..., Any]) -> EntryDispatcher:
     """Return what runs the machine code of ``loops``."""
     dispatcher = EntryDispatcher(loops, targetoptions=OPTIONS, pipeline_class=EntryCompiler)
-    dispatcher._cache = EntryCache(loops)
+    made_of = f"{Reach(loops).digest} {sorted(OPTIONS.items(), key=str)} {MADE}"
+    dispatcher._cache = kept(EntryCache, loops, made_of)
     return dispatcher
 
 

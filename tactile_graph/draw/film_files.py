@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.draw.colours import FOUND, TRUE
 from tactile_graph.draw.paint_strip import HEAT
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import UsageError, without
 
 Picture = NDArray[np.uint8]
 RATE_HZ = 25.0
@@ -204,10 +204,10 @@ def ffmpeg() -> Any:
     Raises
     ------
     UsageError
-        If it is not installed.
+        If it is not installed, or does not work.
     """
     try:
         import imageio_ffmpeg
-    except ImportError:
-        raise UsageError(MISSING) from None
+    except ImportError as error:
+        raise UsageError(without("imageio_ffmpeg", error, MISSING)) from error
     return imageio_ffmpeg

@@ -7,7 +7,7 @@ from concurrent.futures import BrokenExecutor
 from typing import Any
 from urllib.parse import urlsplit
 
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import UsageError, without
 from tactile_graph.many.executor_kind import ExecutorKind, Opened
 
 PATIENCE_S = 5
@@ -27,8 +27,8 @@ def opened(address: str, n_workers: int | None) -> Opened:
     try:
         from distributed import Client
         from distributed.scheduler import KilledWorker
-    except ImportError:
-        raise UsageError(MISSING) from None
+    except ImportError as error:
+        raise UsageError(without("distributed", error, MISSING)) from error
     connected: Any = Client  # which is not annotated
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # we say it in a line
     try:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from tactile_graph.errors import UsageError, did_you_mean, one_of
+from tactile_graph.errors import PluginError, UsageError, did_you_mean, one_of
 
 OWN = "tactile-graph"
 """The project's own package."""
@@ -41,6 +41,31 @@ class Plugin:
     def label(self) -> str:
         """Plugin and package, as errors name it."""
         return f"plugin {self.name!r} (package {self.package})"
+
+
+def check_name(plugin: Plugin, packages: Sequence[str]) -> None:
+    """Refuse a plugin whose name another package's has too; the project's own keep theirs.
+
+    Parameters
+    ----------
+    plugin : Plugin
+    packages : sequence of str
+        All that have a plugin of this name.
+
+    Raises
+    ------
+    PluginError
+    """
+    if len(packages) == 1 or plugin.package == OWN:
+        return
+    if OWN in packages:
+        told = f"package {OWN} has a plugin of this name already; give the entry point another"
+        raise PluginError(told)
+    owners = " and ".join(packages)
+    raise PluginError(
+        f"packages {owners} have a plugin of this name each, so none of them has it; "
+        "uninstall all but one, or give its entry point another name"
+    )
 
 
 @dataclass

@@ -20,7 +20,7 @@ from tactile_graph.errors import PluginError, UsageError, did_you_mean, shown
 from tactile_graph.plugins import hookspecs
 from tactile_graph.plugins.foreign_code import Broken, foreign_code
 from tactile_graph.plugins.mistakes import check_hooks, stale, why
-from tactile_graph.plugins.names import OWN, Names, Offer, Plugin, singular
+from tactile_graph.plugins.names import OWN, Names, Offer, Plugin, check_name, singular
 from tactile_graph.vocabulary import QUANTITIES, UNITS, Vocabulary
 
 if TYPE_CHECKING:
@@ -80,11 +80,16 @@ class Registry:
         self._add_hooks(hookspecs)
         allowed = selection or Selection()
         modules = []
-        for name, package, version, loader in plugins:
+        rows = [*plugins]
+        owners: dict[str, list[str]] = {}
+        for name, package, *_ in rows:
+            owners.setdefault(name, []).append(package)
+        for name, package, version, loader in rows:
             plugin = Plugin(name, package, version, blocked=not allowed.allows(name))
             self.plugins.append(plugin)
             if not plugin.blocked:
                 with self._blamed(plugin):
+                    check_name(plugin, owners[name])
                     modules.append((plugin, self._module(plugin, loader)))
         # A hook of a plugin that is down is no misspelt one.
         sure = len(modules) == len(self.plugins)
@@ -114,12 +119,6 @@ class Registry:
     def _module(self, plugin: Plugin, loader: Callable[[], ModuleType]) -> ModuleType:
         with foreign_code(plugin.name, plugin.label):
             module = loader()
-        others = [p for p in self.plugins[:-1] if p.name == plugin.name and not p.error]
-        if others:
-            raise PluginError(
-                f"package {others[0].package} has a plugin of this name already; "
-                "give the entry point another"
-            )
         own = getattr(module, "hookspecs", None)
         if isinstance(own, ModuleType):
             self._add_hooks(own)
@@ -243,7 +242,12 @@ class Registry:
         return {os.path.abspath(o.target): o.plugin.package for o in offers}
 
     def unknown(self, kind: str, name: str) -> str:
-        """Return the text that says a name is not on offer, with what is near."""
+        """Return the text that says a name is not on offer, with what is near, or why not."""
+        head, dot, _ = name.partition(".")
+        called = [p for p in self.plugins if dot and p.name == head]
+        if called and all(p.error for p in called):
+            told = f"plugin {head!r} failed to load: {called[0].error}"
+            return f"no {singular(kind)} named {name!r}: {told}"
         return self._of(kind).unknown(name) + self.missing_plugins()
 
     def missing_plugins(self) -> str:
@@ -254,7 +258,8 @@ class Registry:
              "; 'tactile-graph plugins' says why"),
             ("blocked", [p.name for p in self.plugins if p.blocked], ""),
         ):  # fmt: skip
-            text += f" (plugins {what}: {', '.join(names)}{more})" if names else ""
+            told = ", ".join(dict.fromkeys(names))
+            text += f" (plugins {what}: {told}{more})" if names else ""
         return text
 
     def reader(self) -> str | None:

@@ -246,6 +246,14 @@ def test_the_steps_shown_have_the_types_that_a_new_package_checks(tmp_path: Path
     assert got.returncode == 0, got.stdout
 
 
+def test_the_files_shown_of_a_new_package_are_those_it_has(tmp_path: Path) -> None:
+    shown = [b for b in fenced("how-to/write-a-plugin", "text") if "pyproject.toml" in b]
+    words = ["new", "tactile-graph-smooth", "--kind", "filter", "--into", str(tmp_path)]
+    assert CliRunner().invoke(cli, words).exit_code == 0
+    files = [p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*") if p.is_file()]
+    assert [b.split() for b in shown] == [sorted(files)]
+
+
 @pytest.mark.slow  # takes seconds
 def test_the_comparison_from_python_runs(capsys: pytest.CaptureFixture[str]) -> None:
     (code,) = fenced("compare", "python")

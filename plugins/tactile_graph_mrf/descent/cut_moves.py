@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, without
 from tactile_graph_mrf.descent.swap_moves import Bonds, swap_cycle
 from tactile_graph_mrf.energy.layout import layout
 from tactile_graph_mrf.energy.potentials import Unary
@@ -212,9 +212,6 @@ def _maxflow() -> Callable[..., Any]:
     try:
         import maxflow
     except ImportError as error:
-        raise DataError(
-            "graph_cuts",
-            "needs PyMaxflow, which is not installed; "
-            'pip install "tactile-graph[graphcut]", or take restore',
-        ) from error
+        missing = 'needs PyMaxflow: pip install "tactile-graph[graphcut]", or take restore'
+        raise DataError("graph_cuts", without("maxflow", error, missing)) from error
     return maxflow.Graph[float]  # type: ignore[no-any-return]

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.errors import DataError, UsageError
+from tactile_graph.errors import DataError, UsageError, without
 from tactile_graph.quantities import unknown_quantity
 
 FORMAT = "tactile-graph recording"
@@ -46,10 +46,9 @@ def load_zarr() -> ModuleType:
     """Return Zarr; it comes with an extra, and only stores need it."""
     try:
         import zarr
-    except ImportError:
-        raise UsageError(
-            "Zarr stores need the 'zarr' extra: pip install \"tactile-graph[zarr]\""
-        ) from None
+    except ImportError as error:
+        missing = "Zarr stores need the 'zarr' extra: pip install \"tactile-graph[zarr]\""
+        raise UsageError(without("zarr", error, missing)) from error
     module: ModuleType = zarr
     return module
 

@@ -43,7 +43,8 @@ def write_npz(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
     """
     arrays = _arrays(list(frames))
     with whole_file(path) as file:
-        np.savez_compressed(file, allow_pickle=False, **arrays)
+        # No array is of objects. NumPy before 2.2 would keep `allow_pickle` as one more array.
+        np.savez_compressed(file, **arrays)
         file.flush()
         os.fsync(file.fileno())
     return len(arrays["values"])

@@ -59,6 +59,7 @@ def prepared(name: str) -> str:
     """Compile what a pipeline's first frames need; return what to say of it."""
     from tactile_graph.api.pipeline import load
     from tactile_graph.compiled import warm_up
+    from tactile_graph.compiled.preparing import preparing
     from tactile_graph.errors import TactileGraphError
     from tactile_graph.wires.frame_stack import in_stacks
 
@@ -78,4 +79,6 @@ def prepared(name: str) -> str:
         runner.prepare()
     except TactileGraphError as error:
         return f"{name}: {FAILED}, {error}"
+    if preparing.not_kept:
+        return f"{name}: {FAILED}, {preparing.not_kept}"
     return f"{name}: prepared by {n} frames in {time.monotonic() - start:.1f} s"

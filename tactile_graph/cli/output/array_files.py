@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import UsageError, without
 
 
 class Cells(NamedTuple):
@@ -107,8 +107,9 @@ class Hdf5:
     def __init__(self, path: Path, about: dict[str, Any]) -> None:
         try:
             import h5py
-        except ImportError:
-            raise UsageError('HDF5 files need h5py: pip install "tactile-graph[hdf5]"') from None
+        except ImportError as error:
+            missing = 'HDF5 files need h5py: pip install "tactile-graph[hdf5]"'
+            raise UsageError(without("h5py", error, missing)) from error
         self._written = _Patient(path, "w+")
         self._file = h5py.File(self._written, "w")
         self._file.attrs.update(about)
@@ -146,8 +147,9 @@ class Zarr:
     def __init__(self, path: Path, about: dict[str, Any]) -> None:
         try:
             import zarr
-        except ImportError:
-            raise UsageError('Zarr stores need zarr: pip install "tactile-graph[zarr]"') from None
+        except ImportError as error:
+            missing = 'Zarr stores need zarr: pip install "tactile-graph[zarr]"'
+            raise UsageError(without("zarr", error, missing)) from error
         self._group: Any = zarr.create_group(str(path), attributes=about)
 
     def array(self, name: str, row: tuple[int, ...], cells: Cells, about: dict[str, Any]) -> Any:

@@ -18,7 +18,7 @@ from tactile_graph.cli.output.older import stays, unfinished_by
 from tactile_graph.engine.blocks.block import Block
 from tactile_graph.engine.tables.columns import Column
 from tactile_graph.engine.tables.table import Table, units_of
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import UsageError, without
 from tactile_graph.exporter import Export, Exporter, Writer, check_plain
 from tactile_graph.files import left_of, said, uninterrupted
 from tactile_graph.part_files import part_of, put_in_place, remove
@@ -42,8 +42,8 @@ def pyarrow() -> Any:
     try:
         import pyarrow
         import pyarrow.parquet
-    except ImportError:
-        raise UsageError(MISSING) from None
+    except ImportError as error:
+        raise UsageError(without("pyarrow", error, MISSING)) from error
     return pyarrow
 
 

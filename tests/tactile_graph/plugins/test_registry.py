@@ -87,6 +87,11 @@ def test_what_is_missing_is_told_with_the_plugins_that_are_down() -> None:
         found.path("pipelines", "zzz")
 
 
+NEITHER = (
+    "packages aa-one and zz-two have a plugin of this name each, so none of them has it; "
+    "uninstall all but one, or give its entry point another name"
+)
+OURS = "package tactile-graph has a plugin of this name already; give the entry point another"
 LATE = ("late", plugin(steps={"step": "x:y", "more": step}, pads={"pad": Path("late.yaml")}))
 
 
@@ -151,11 +156,23 @@ def test_a_qualified_name_that_is_not_there_is_told_what_is_near() -> None:
 
 
 def test_two_plugins_of_one_name_do_not_replace_each_other() -> None:
-    found = offered(GOOD, ("good", plugin(steps={"other": step})))
-    assert found.plugins[1].error == (
-        "package good-package has a plugin of this name already; give the entry point another"
-    )
-    assert found.names("steps") == ["step"]
+    for packages, steps, errors in (
+        (("aa-one", "zz-two"), [], [NEITHER, NEITHER]),
+        (("tactile-graph", "aa-one"), ["step"], ["", OURS]),
+    ):
+        rows = zip(packages, ({"step": step}, {"other": step}), strict=True)
+        found = Registry([("good", p, "1.0", plugin(steps=offers)) for p, offers in rows])
+        assert [plugin.error for plugin in found.plugins] == errors
+        assert found.names("steps") == steps
+
+
+def test_a_name_of_two_plugins_is_told_with_both_packages() -> None:
+    rows = [("same", p, "1.0", plugin(steps={"scaled": step})) for p in ("aa-one", "zz-two")]
+    found = Registry(rows)
+    told = f"no step named 'same.scaled': plugin 'same' failed to load: {NEITHER}"
+    with pytest.raises(UsageError, match=f"^{re.escape(told)}$"):
+        found.step("same.scaled")
+    assert found.missing_plugins().startswith(" (plugins failed to load: same; ")
 
 
 @pytest.mark.parametrize(

@@ -66,7 +66,7 @@ def test_far_pairs_are_cut_too(order):
 
 def test_a_missing_library_is_named_with_its_remedy(monkeypatch):
     monkeypatch.setitem(sys.modules, "maxflow", None)
-    with pytest.raises(DataError, match=r"needs PyMaxflow, .*tactile-graph\[graphcut\]"):
+    with pytest.raises(DataError, match=r"needs PyMaxflow: .*tactile-graph\[graphcut\]"):
         graph_cuts(square(), model=model("absolute"))
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, without
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays import node_images
 from tactile_graph_sources.readers.arrays.datasets import Held, Unread, frames_of
@@ -64,11 +64,9 @@ def read(reading: Reading) -> Iterator[Frame]:
 def _h5py(reading: Reading) -> ModuleType:
     try:
         import h5py
-    except ImportError:
-        raise DataError(
-            str(reading.path),
-            "is HDF5, which needs the 'hdf5' extra: pip install \"tactile-graph[hdf5]\"",
-        ) from None
+    except ImportError as error:
+        missing = "is HDF5, which needs the 'hdf5' extra: pip install \"tactile-graph[hdf5]\""
+        raise DataError(str(reading.path), without("h5py", error, missing)) from error
     module: ModuleType = h5py
     return module
 

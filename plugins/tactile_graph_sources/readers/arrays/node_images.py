@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.errors import DataError, UsageError, did_you_mean, one_of
+from tactile_graph.errors import DataError, UsageError, did_you_mean, one_of, without
 from tactile_graph.quantities import is_quantity
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
@@ -47,10 +47,9 @@ def read_store(reading: Reading) -> Iterator[Frame]:
     """
     try:
         import zarr
-    except ImportError:
-        raise UsageError(
-            "Zarr stores need the 'zarr' extra: pip install \"tactile-graph[zarr]\""
-        ) from None
+    except ImportError as error:
+        missing = "Zarr stores need the 'zarr' extra: pip install \"tactile-graph[zarr]\""
+        raise UsageError(without("zarr", error, missing)) from error
     try:
         group: Any = zarr.open_group(str(reading.path), mode="r")
         names = [n for n, _ in group.members(max_depth=None) if f"{n}/values" in group]

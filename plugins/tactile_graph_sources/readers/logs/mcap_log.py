@@ -11,7 +11,7 @@ from bisect import bisect_left
 from collections.abc import Iterator
 from typing import Any
 
-from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph.errors import DataError, did_you_mean, one_of, without
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.head import Head
@@ -151,10 +151,9 @@ def _topics(reading: Reading) -> dict[str, _Topic]:
                 lost.append(found)
                 for topic in topics.values() if found.messages else ():
                     topic.gap = True
-    except ImportError:
-        raise DataError(
-            where, "is MCAP, which needs the 'mcap' extra: pip install \"tactile-graph[mcap]\""
-        ) from None
+    except ImportError as error:
+        missing = "is MCAP, which needs the 'mcap' extra: pip install \"tactile-graph[mcap]\""
+        raise DataError(where, without("mcap", error, missing)) from error
     if lost and not topics:
         raise DataError(where, f"it holds no message that can be read: {lost[0].what}")
     for one in lost:

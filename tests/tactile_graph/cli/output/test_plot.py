@@ -58,6 +58,19 @@ def test_mp4_without_ffmpeg_is_refused_before_the_work(monkeypatch: pytest.Monke
     assert done.stdout == ""
 
 
+@pytest.mark.usefixtures("hand_made")
+def test_an_extra_that_is_broken_is_not_called_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "imageio_ffmpeg.py").write_text("import tg_no_such_module\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "imageio_ffmpeg", raising=False)
+    done = call("run", "discs", "--plot", "film.mp4")
+    assert done.exit_code == 2
+    told = "it is installed, but cannot be imported: No module named 'tg_no_such_module'"
+    assert told in " ".join(done.stderr.split())
+
+
 def test_the_endings_of_strips_are_those_they_are_drawn_in() -> None:
     from tactile_graph.draw.strip import FORMATS
 
