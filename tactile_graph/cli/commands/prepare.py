@@ -12,6 +12,7 @@ from tactile_graph.cli.ahead import FRAMES
 from tactile_graph.cli.completions import complete_pipeline
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
+from tactile_graph.plugins.devices import reads_device
 
 FAILED = "not prepared"
 
@@ -29,8 +30,8 @@ def prepare(pipelines: tuple[str, ...], jobs: int) -> None:
     """Compile the kernels of pipelines now; without any named, of all installed.
 
     Runs the first frames of each pipeline's own source, and keeps the machine code on disk. What
-    is there already is not compiled again. A pipeline without a source, or with a step that writes,
-    is left out.
+    is there already is not compiled again. A pipeline without a source, with one that reads a
+    device, or with a step that writes, is left out.
     """
     from concurrent.futures import ProcessPoolExecutor, as_completed
     from multiprocessing import get_context
@@ -68,6 +69,8 @@ def prepared(name: str) -> str:
         pipeline = load(name)
         if pipeline.source is None:
             return f"{name}: {FAILED}, declares no source"
+        if reads_device(pipeline.source.name):
+            return f"{name}: {FAILED}, its source reads a device"
         if pipeline.writes:
             return f"{name}: {FAILED}, a step of it writes"
         frames = [*islice(pipeline.frames(), FRAMES)]
