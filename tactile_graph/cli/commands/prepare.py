@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from contextlib import ExitStack
 from itertools import islice
 
 import click
@@ -11,6 +12,7 @@ import click
 from tactile_graph.cli.ahead import FRAMES
 from tactile_graph.cli.completions import complete_pipeline
 from tactile_graph.errors import UsageError
+from tactile_graph.out_of_reach import end_safe_path, safe_path
 from tactile_graph.plugins import registry
 from tactile_graph.plugins.devices import reads_device
 
@@ -49,11 +51,19 @@ def prepare(pipelines: tuple[str, ...], jobs: int) -> None:
         for name in names:
             out.print(prepared(name), soft_wrap=True, highlight=False)
         return
-    with ProcessPoolExecutor(
-        min(jobs, len(names)), get_context("spawn"), registry.restrict, (registry.selected(),)
-    ) as pool:
-        for done in as_completed([pool.submit(prepared, name) for name in names]):
+    with ExitStack() as opened:
+        with safe_path():
+            spawn, given = get_context("spawn"), (registry.selected(),)
+            pool = ProcessPoolExecutor(min(jobs, len(names)), spawn, _begin, given)
+            opened.enter_context(pool)
+            coming = [pool.submit(prepared, name) for name in names]
+        for done in as_completed(coming):
             out.print(done.result(), soft_wrap=True, highlight=False)
+
+
+def _begin(selection: str) -> None:
+    end_safe_path()
+    registry.restrict(selection)
 
 
 def prepared(name: str) -> str:
