@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -54,9 +55,9 @@ def read_files(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     read: list[Path] = []
     text = module.text_of_file
 
-    def noted(path: Path) -> str:
+    def noted(path: Path, **how: bool) -> str:
         read.append(path)
-        return text(path)
+        return text(path, **how)
 
     monkeypatch.setattr(module, "text_of_file", noted)
     return read
@@ -133,6 +134,15 @@ def test_a_file_without_an_end_is_refused(tmp_path: Path) -> None:
     endless.symlink_to("/dev/zero")
     with pytest.raises(UsageError, match=r"is longer than 4000000 bytes"):
         load(endless, registry())
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+def test_a_pipe_that_a_pipeline_names_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.yaml")
+    outer = tmp_path / "outer.yaml"
+    outer.write_text("pipeline: p\nnodes: {m: {use: pipe.yaml, in: frame}}\noutputs: [m]\n")
+    with pytest.raises(PipelineError, match=r"pipe\.yaml' is a pipe; save what it gives as a file"):
+        load(outer, registry())
 
 
 def test_what_is_no_pipeline_file_is_not_shown(tmp_path: Path) -> None:

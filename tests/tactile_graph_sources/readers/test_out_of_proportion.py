@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import struct
 import zlib
 from pathlib import Path
@@ -23,6 +24,7 @@ from tactile_graph_sources.readers.arrays import npz as npz_reader
 from tactile_graph_sources.readers.arrays.archive import opened
 from tactile_graph_sources.readers.logs import mcap_chunks
 from tactile_graph_sources.readers.text import json_stack
+from tactile_graph_sources.scene import load_scene
 from tactile_graph_sources.stores.journal import read_journal
 
 
@@ -272,3 +274,11 @@ def test_a_preset_is_read_as_strictly_as_a_pipeline(text: str, tmp_path: Path) -
     (tmp_path / "a.yaml").write_text(text)
     with pytest.raises(TactileGraphError):
         load_preset(str(tmp_path / "a.yaml"))
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+@pytest.mark.parametrize("load", [load_pad, load_scene])
+def test_a_pad_and_a_scene_are_not_waited_for(tmp_path: Path, load: Any) -> None:
+    os.mkfifo(tmp_path / "a.yaml")
+    with pytest.raises(UsageError, match=r"a\.yaml' is a pipe; save what it gives as a file first"):
+        load(str(tmp_path / "a.yaml"))
