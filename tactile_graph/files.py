@@ -253,6 +253,19 @@ def is_plain(name: Name) -> bool:
         return True
 
 
+def is_named_pipe(name: Name) -> bool:
+    """Return whether a name is that of a pipe in a folder: nobody may ever write to it.
+
+    Those that a shell opens lie in /dev.
+    """
+    if os.path.abspath(name).startswith(("/dev/", "/proc/")):
+        return False
+    try:
+        return stat.S_ISFIFO(os.stat(name).st_mode)
+    except OSError:
+        return False
+
+
 def looked_for(name: Name) -> None:
     """Tell who watches files of one that is not there: of those that are opened, Python tells.
 

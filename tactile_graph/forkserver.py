@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tactile_graph.out_of_reach import out_of_reach
+from tactile_graph.out_of_reach import out_of_reach, safe_path
 
 FORKED = "tactile_graph.many.forked"
 
@@ -23,6 +23,7 @@ def begin_forkserver(preloaded: Sequence[str] = ()) -> None:
     from multiprocessing.forkserver import ensure_running, set_forkserver_preload
 
     set_forkserver_preload([FORKED, *preloaded])
-    resource_tracker.ensure_running()  # or it would be begun below, and unblock the signal
-    with out_of_reach():
-        ensure_running()
+    with safe_path():
+        resource_tracker.ensure_running()  # or it would be begun below, and unblock the signal
+        with out_of_reach():
+            ensure_running()

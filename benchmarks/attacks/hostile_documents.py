@@ -11,6 +11,7 @@ from hostile_recordings import MOST_BYTES, Make, file_of, repeated
 STEP = "{step: threshold, in: frame, with: {level_v: 1}}"
 PIPELINE = f"pipeline: p\nnodes:\n  a: {STEP}\n"
 END = "outputs: [a]\n"
+GAINS = "  a: {{step: gain, in: frame, with: {{elements: {}}}}}\n"
 
 
 def documents() -> Iterator[tuple[str, Callable[[], str]]]:
@@ -123,6 +124,8 @@ def pipelines() -> Iterator[tuple[str, Callable[[], str]]]:
         "1,000 uses with settings": lambda: head + "".join(
             f"  n{i}: {{use: circle-3, in: frame, with: {{footprint.level_v: 0.0{i + 1}}}}}\n"
             for i in range(1_000)) + "outputs: [n0]\n",
+        "gains of /dev/zero": lambda: head + GAINS.format("/dev/zero") + END,
+        "gains of a terminal": lambda: head + GAINS.format("/dev/tty") + END,
         "a use of /dev/zero": lambda: head + "  a: {use: /dev/zero.yaml, in: frame}\n" + END,
         "a use of a device": lambda: head + "  a: {use: /dev/zero, in: frame}\n" + END,
         "a use of a long name": lambda: head + f"  a: {{use: {'x' * 900_000}, in: frame}}\n"
@@ -153,6 +156,9 @@ def conditions() -> Iterator[tuple[str, str]]:
         "a tuple repeated": "len((1,)*f.count) > 3",
         "a text repeated": "'x'*1000000000 == 'y'",
         "a text formatted": "'%1000000000d' % f.count == 1",
+        "a chosen text repeated": "min('x', 'y') * 1000000000 == 'x'",
+        "a chosen text formatted": "min('%1000000000d', 'a') % 1 == 'a' and f.count > 0",
+        "a chosen list repeated": "f.count in max([1], [2]) * 500000000",
         "a power": "f.count ** 9999999 > 1",
         "a shift": "1 << f.count > 1",
         "products": "*".join(["99999999999999999999"] * 80) + " > f.count",

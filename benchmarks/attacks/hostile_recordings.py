@@ -464,6 +464,14 @@ def hdf5() -> Iterator[tuple[str, Make]]:
     for size in ((10**10, 2, 2), (2, 10**5, 2), (1_000, 1_900, 2), (1_000, 1_900, 1_900)):
         what = "HDF5 of {} images of a node, {} wide, in pieces of {}".format(*size)
         yield what, made(lambda f, s=size: of_nodes(f, *s))
+
+    def timed(file: Any, n: int, letters: int) -> None:
+        file["values"] = np.ones((5, 8, 8))
+        file.create_dataset("time", (n,), f"S{letters}", chunks=(min(n, 1000),))
+
+    for size in ((5, 10**8), (2 * 10**9, 4)):
+        what = "HDF5 whose times are {} texts of {} letters".format(*size)
+        yield what, made(lambda f, s=size: timed(f, *s))
     yield "HDF5 of 3,000 groups in each other", made(nested)
     yield "HDF5 of a dataset elsewhere", made(virtual)
     yield "HDF5 that goes round", made(looped)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from tactile_graph.compiled import Kernel, plain_and_noted, warm_up
 from tactile_graph.compiled.race import Race
 from tactile_graph.plugins import registry
+from tactile_graph.plugins.devices import reads_device
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
@@ -65,16 +66,17 @@ def compile_ahead(pipelines: list[Pipeline]) -> None:
 
 
 def opened(names: list[str], settings: list[str], recordings: list[str]) -> Iterator[Pipeline]:
-    """Yield the pipelines that can be run a second time: they have a source, and none writes."""
+    """Yield the pipelines that can be run a second time: they read no device, and none writes."""
     from tactile_graph.cli.arguments import open_pipeline
     from tactile_graph.errors import TactileGraphError
 
     for name in names:
         try:
             pipeline = open_pipeline(name, recordings, settings=settings)
+            of_device = pipeline.source is not None and reads_device(pipeline.source.name)
         except TactileGraphError:
             continue  # the command itself says what is wrong
-        if not pipeline.writes:
+        if not (pipeline.writes or of_device):
             yield pipeline
 
 

@@ -141,7 +141,7 @@ class Beside:
         self._newest: tuple[Outcomes, float] | None = None
         self._came, self._lock, self._closed = Condition(), Lock(), False
         order = (variant, only, seed)
-        command = [sys.executable, "-m", "tactile_graph.live.beside_worker"]
+        command = [sys.executable, "-P", "-m", "tactile_graph.live.beside_worker"]
         with out_of_reach():
             self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         self._end = weakref.finalize(self, _ended, self._process)

@@ -21,6 +21,8 @@ from multiprocessing.util import Finalize
 from queue import Empty, SimpleQueue
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
+from tactile_graph.out_of_reach import end_safe_path, safe_path
+
 FIRST_OF_ALL = 100
 """Priority at this process' end: before the other processes are waited for."""
 P = ParamSpec("P")
@@ -210,7 +212,8 @@ class _Line:
         process = self._context.Process(  # type: ignore[attr-defined]  # of every real context
             target=_work, args=(there, self._begin, self._given)
         )
-        process.start()
+        with safe_path():
+            process.start()
         there.close()
         self._process = process
         if self._killed:  # while it was starting
@@ -254,6 +257,7 @@ def _settle(future: Future[Any], answer: bytes | BaseException) -> None:
 
 
 def _work(pipe: Connection, begin: Callable[..., None], given: tuple[Any, ...]) -> None:
+    end_safe_path()
     begin(*given)
     while True:
         try:

@@ -172,7 +172,7 @@ def compile_condition(
     try:
         tree = compiler.parse(text, ())
         if not isinstance(tree, ast.Constant) or isinstance(tree.value, str):
-            words = no_truth(tree)
+            words = no_truth(tree, compiler)
             if words:
                 raise ConditionError(words)
         if not compiler.is_truth(tree):
@@ -296,7 +296,7 @@ class _Compiler:
         if isinstance(node, ast.Constant) and not isinstance(node.value, int | float | str):
             raise ConditionError(f"{node.value!r} is not allowed in a condition", node.col_offset)
         for part in _truth_parts(node):
-            words = no_truth(part)
+            words = no_truth(part, self)
             if words:
                 raise ConditionError(words, part.col_offset)
         for field, value in ast.iter_fields(node):
@@ -367,7 +367,7 @@ class _Compiler:
             )
         if len(lists) > 1:
             raise ConditionError(f"{name}() is over the items of one list, got {one_of(lists)}", at)
-        words = no_truth(inner) or ("" if self.is_truth(inner) else self.not_truth(inner))
+        words = no_truth(inner, self) or ("" if self.is_truth(inner) else self.not_truth(inner))
         if words:
             raise ConditionError(words, at)
         self.groups.append(tuple(over))

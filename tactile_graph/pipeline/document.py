@@ -13,6 +13,7 @@ from typing import Any
 import yaml
 
 from tactile_graph.errors import Mark, PipelineError, Problem, UsageError, shown
+from tactile_graph.files import is_named_pipe
 from tactile_graph.pipeline import yaml_numbers
 from tactile_graph.pipeline.yaml_numbers import in_yaml as in_yaml
 from tactile_graph.pipeline.yaml_numbers import is_plain as is_plain
@@ -120,16 +121,25 @@ def _columns(text: str) -> int:
     )
 
 
-def text_of_file(path: pathlib.Path, most_bytes: int = MOST_BYTES) -> str:
+def text_of_file(path: pathlib.Path, most_bytes: int = MOST_BYTES, waited_for: bool = False) -> str:
     """Return a file's text, as far as it has an end; no more of it is read than is allowed.
+
+    Parameters
+    ----------
+    path : Path
+    most_bytes : int
+    waited_for : bool
+        Whether it may be a pipe that is still to be written to, as one that a person names.
 
     Raises
     ------
     UsageError
-        If it is longer.
+        If it is longer, or a pipe.
     OSError, UnicodeDecodeError
         If it cannot be read, or is not UTF-8.
     """
+    if not waited_for and is_named_pipe(path):
+        raise UsageError(f"{str(path)!r} is a pipe; save what it gives as a file first")
     with path.open("rb") as file:
         data = file.read(most_bytes + 1)
     if len(data) > most_bytes:

@@ -44,7 +44,8 @@ def load_graph(name: str | Path, registry: Registry | None = None) -> Graph:
     """Return the graph of the pipeline of that name or in that file; for the rest see `load`."""
     registry = registry or installed()
     path = find(name, registry)
-    return _build(_text(path), _shown(path), registry, {}, None, Opened((), {}, FilesRead.here()))
+    text = _text(path, waited_for=True)
+    return _build(text, _shown(path), registry, {}, None, Opened((), {}, FilesRead.here()))
 
 
 def parse_graph(text: str, file: str = "<text>", registry: Registry | None = None) -> Graph:
@@ -154,9 +155,9 @@ def _siblings(path: Path) -> list[str]:
         return []
 
 
-def _text(path: Path) -> str:
+def _text(path: Path, waited_for: bool = False) -> str:
     try:
-        return text_of_file(path)
+        return text_of_file(path, waited_for=waited_for)
     except OSError as error:
         why = error.strerror or error
         raise UsageError(f"pipeline file {str(path)!r} cannot be read: {why}") from None

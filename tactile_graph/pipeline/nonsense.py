@@ -35,7 +35,7 @@ class Reading(Protocol):
         """Return a part as the file has it."""
 
 
-def no_truth(node: ast.expr) -> str:
+def no_truth(node: ast.expr, reading: Reading) -> str:
     """Return why a part of a condition is no yes or no that a frame decides; "" if it may be."""
     if isinstance(node, ast.Tuple | ast.List):
         return (
@@ -47,7 +47,7 @@ def no_truth(node: ast.expr) -> str:
     if any(True for _ in _read(node)):
         return ""
     alone = isinstance(node, ast.Constant)
-    return _always(node) + ("; what is it to be compared with?" if alone else "")
+    return _always(node, reading) + ("; what is it to be compared with?" if alone else "")
 
 
 def no_arithmetic(node: ast.BinOp, reading: Reading) -> str:
@@ -56,11 +56,30 @@ def no_arithmetic(node: ast.BinOp, reading: Reading) -> str:
     A few signs of texts and lists can ask for all memory there is.
     """
     for side in (node.left, node.right):
-        if isinstance(side, ast.Tuple | ast.List):
-            return "arithmetic takes numbers, not a list"
-        if _sort(side, reading) == "text":
-            return f"arithmetic takes numbers, and {reading.spell(side)} is a text"
+        for part, its_items in _outcomes(side):
+            kinds = arms(reading.kind(part))
+            if its_items:
+                kinds = tuple(k for kind in kinds for k in arms(list_item(kind) or kind))
+            if isinstance(part, ast.Tuple | ast.List) or any(map(list_item, kinds)):
+                return "arithmetic takes numbers, not a list"
+            if _sort(part, reading) == "text" or "text" in map(sort_of, kinds):
+                return f"arithmetic takes numbers, and {reading.spell(part)} is a text"
     return ""
+
+
+def _outcomes(node: ast.expr, its_items: bool = False) -> Iterator[tuple[ast.expr, bool]]:
+    """Yield the parts one of which a part comes out as; of each whether its items are meant."""
+    if isinstance(node, ast.BoolOp):
+        parts = [(part, False) for part in node.values]
+    elif isinstance(node, ast.Tuple | ast.List) and its_items:
+        parts = [(part, False) for part in node.elts]
+    elif isinstance(node, ast.Call) and ast.unparse(node.func) in ("max", "min"):
+        parts = [(part, len(node.args) == 1) for part in node.args]
+    else:
+        yield node, its_items
+        return
+    for part in parts:
+        yield from _outcomes(*part)
 
 
 def no_call(name: str, given: list[ast.expr], reading: Reading) -> str:
@@ -78,11 +97,11 @@ def no_call(name: str, given: list[ast.expr], reading: Reading) -> str:
 def nonsense(node: ast.Compare, reading: Reading) -> str:
     """Return why a comparison never tells frames apart; "" where it may."""
     if not any(True for _ in _read(node)):
-        return _always(node)
+        return _always(node, reading)
     sides = [node.left, *node.comparators]
     for (left, right), operator in zip(pairwise(sides), node.ops, strict=True):
         if len(node.ops) > 1 and not any(True for side in (left, right) for _ in _read(side)):
-            return _always(ast.Compare(left, [operator], [right]))
+            return _always(ast.Compare(left, [operator], [right]), reading)
         if isinstance(operator, ast.In | ast.NotIn):
             found = _no_list(left, right, operator, reading)
         else:
@@ -105,8 +124,11 @@ def _read(node: ast.expr) -> Iterator[ast.Name]:
             yield part
 
 
-def _always(node: ast.expr) -> str:
+def _always(node: ast.expr, reading: Reading) -> str:
     """Return how a part that reads no node comes out in every frame."""
+    for part in ast.walk(node):
+        if isinstance(part, ast.BinOp) and (words := no_arithmetic(part, reading)):
+            return words
     code = compile(ast.fix_missing_locations(ast.Expression(node)), "<condition>", "eval")
     try:
         always = bool(eval(code, {"__builtins__": {}, **FUNCTIONS}))  # whitelisted by the caller

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+import bz2
+import gzip
+import io
+import lzma
+import zlib
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, RuleError
+from tactile_graph.files import is_plain
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
 from tactile_graph_filters.nan import finite, refuse_unbounded
+
+MOST_BYTES = 16_000_000
+"""Of a file of gains, or of the numbers in it: more than any pad has elements for."""
+_UNPACKED: dict[str, Any] = {".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open}
+_UNREADABLE = (OSError, ValueError, EOFError, zlib.error, lzma.LZMAError)
 
 
 class Gain:
@@ -29,7 +40,7 @@ class Gain:
     ValueError
         If none is given, or a gain is negative or no number.
     DataError
-        If the file cannot be read as a table of numbers.
+        If the file cannot be read as a table of numbers, or holds more than 16 MB.
 
     Notes
     -----
@@ -104,11 +115,27 @@ def _table(name: str, rows: list[list[float]]) -> NDArray[np.float64]:
 
 
 def _read(path: Path) -> NDArray[np.float64]:
+    if not is_plain(path):
+        raise DataError(str(path), "is no plain file; save what it gives as a file first")
     try:
         if path.suffix == ".npy":
-            table = np.atleast_2d(np.load(path, allow_pickle=False))
+            table: NDArray[Any] = np.lib.format.open_memmap(path, "r")
         else:
-            table = np.loadtxt(path, delimiter=",", ndmin=2)
-    except (OSError, ValueError) as error:
+            table = np.loadtxt(io.StringIO(_text(path)), delimiter=",", ndmin=2)
+        if table.nbytes > MOST_BYTES:
+            raise ValueError(_too_much(table.nbytes))
+    except _UNREADABLE as error:
         raise DataError(str(path), f"must hold a table of gains: {error}") from error
-    return _table(str(path), table.tolist())
+    return _table(str(path), np.atleast_2d(table).tolist())
+
+
+def _text(path: Path) -> str:
+    with _UNPACKED.get(path.suffix, open)(path, "rb") as file:
+        data: bytes = file.read(MOST_BYTES + 1)
+    if len(data) > MOST_BYTES:
+        raise ValueError(_too_much(len(data)))
+    return data.decode("utf-8-sig")
+
+
+def _too_much(n_bytes: int) -> str:
+    return f"{n_bytes / 1e6:,.0f} MB or more, allowed are {MOST_BYTES / 1e6:g}"

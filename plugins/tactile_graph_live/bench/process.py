@@ -10,6 +10,7 @@ from multiprocessing.connection import Connection
 
 from tactile_graph.compiled import warm_up
 from tactile_graph.errors import TactileGraphError
+from tactile_graph.out_of_reach import end_safe_path
 from tactile_graph.plugins.registry import restrict
 from tactile_graph_live.bench import wire
 from tactile_graph_live.bench.bench import Bench
@@ -27,6 +28,7 @@ TICK_S = 0.25
 
 def main(pipe: Connection, order: wire.Order) -> None:
     """Run a bench until the server says so, or is gone."""
+    end_safe_path()
     for number in ENDS:  # they are the server's, which tells us, and may want the last frames
         signal.signal(number, signal.SIG_IGN)
     if sys.stderr is not None:

@@ -10,7 +10,7 @@ from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from queue import SimpleQueue
 
-from tactile_graph.out_of_reach import out_of_reach
+from tactile_graph.out_of_reach import out_of_reach, safe_path
 from tactile_graph_live.bench.process import ENDS, main
 from tactile_graph_live.bench.wire import End, FromBench, Order, ToBench
 
@@ -37,10 +37,11 @@ class BenchLink:
         self._process = context.Process(
             target=main, args=(theirs, order), name="tactile-graph bench", daemon=True
         )
-        if sys.platform != "win32":  # or it would be begun below, and unblock the signals
-            resource_tracker.ensure_running()
-        with out_of_reach(*ENDS):
-            self._process.start()
+        with safe_path():
+            if sys.platform != "win32":  # or it would be begun below, and unblock the signals
+                resource_tracker.ensure_running()
+            with out_of_reach(*ENDS):
+                self._process.start()
         theirs.close()
         self._take, self._gone = take, gone
         self._ending = False

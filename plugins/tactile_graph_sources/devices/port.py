@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from types import ModuleType
 from typing import Any
+from urllib.parse import parse_qs, urlsplit
 
 import serial
 
@@ -58,6 +59,7 @@ class Port:
         # Only a socket reports in_waiting as 0 or 1; there a read without waiting empties it.
         self._is_socket = url.startswith("socket://")
         try:
+            _write_no_file(url)
             # dtr and rts must be set before open, or opening resets the board with the defaults.
             self._port: Any = serial.serial_for_url(url, do_not_open=True)
             self._port.baudrate = baud or transport.baud
@@ -112,3 +114,10 @@ class Port:
         """Close; a port that is gone already is fine."""
         with contextlib.suppress(*PORT_ERRORS):
             self._port.close()
+
+
+def _write_no_file(url: str) -> None:
+    """Raise ValueError if pyserial would empty a file, and write what comes and goes into it."""
+    parts = urlsplit(url)
+    if parts.scheme == "spy" and "file" in parse_qs(parts.query, keep_blank_values=True):
+        raise ValueError("spy:// writes no file here; without its 'file=' it writes to stderr")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from contextlib import ExitStack
 from itertools import islice
 
 import click
@@ -11,7 +12,9 @@ import click
 from tactile_graph.cli.ahead import FRAMES
 from tactile_graph.cli.completions import complete_pipeline
 from tactile_graph.errors import UsageError
+from tactile_graph.out_of_reach import end_safe_path, safe_path
 from tactile_graph.plugins import registry
+from tactile_graph.plugins.devices import reads_device
 
 FAILED = "not prepared"
 
@@ -29,8 +32,8 @@ def prepare(pipelines: tuple[str, ...], jobs: int) -> None:
     """Compile the kernels of pipelines now; without any named, of all installed.
 
     Runs the first frames of each pipeline's own source, and keeps the machine code on disk. What
-    is there already is not compiled again. A pipeline without a source, or with a step that writes,
-    is left out.
+    is there already is not compiled again. A pipeline without a source, with one that reads a
+    device, or with a step that writes, is left out.
     """
     from concurrent.futures import ProcessPoolExecutor, as_completed
     from multiprocessing import get_context
@@ -48,11 +51,19 @@ def prepare(pipelines: tuple[str, ...], jobs: int) -> None:
         for name in names:
             out.print(prepared(name), soft_wrap=True, highlight=False)
         return
-    with ProcessPoolExecutor(
-        min(jobs, len(names)), get_context("spawn"), registry.restrict, (registry.selected(),)
-    ) as pool:
-        for done in as_completed([pool.submit(prepared, name) for name in names]):
+    with ExitStack() as opened:
+        with safe_path():
+            spawn, given = get_context("spawn"), (registry.selected(),)
+            pool = ProcessPoolExecutor(min(jobs, len(names)), spawn, _begin, given)
+            opened.enter_context(pool)
+            coming = [pool.submit(prepared, name) for name in names]
+        for done in as_completed(coming):
             out.print(done.result(), soft_wrap=True, highlight=False)
+
+
+def _begin(selection: str) -> None:
+    end_safe_path()
+    registry.restrict(selection)
 
 
 def prepared(name: str) -> str:
@@ -69,6 +80,8 @@ def prepared(name: str) -> str:
         pipeline = load(name)
         if pipeline.source is None:
             return f"{name}: {FAILED}, declares no source"
+        if reads_device(pipeline.source.name):
+            return f"{name}: {FAILED}, its source reads a device"
         if pipeline.writes:
             return f"{name}: {FAILED}, a step of it writes"
         frames = [*islice(pipeline.frames(), FRAMES)]

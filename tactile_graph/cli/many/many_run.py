@@ -146,7 +146,7 @@ class ManyRun:
         try:
             data = json.loads(sidecar(name).read_bytes())
             return bool(data["made_of"] == self._of and data["bytes"] == Path(name).stat().st_size)
-        except (OSError, ValueError, KeyError, TypeError):
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
             return False
 
     def _begin(self) -> None:

@@ -277,7 +277,7 @@ def manifest_of(folder: Path) -> dict[str, Any] | None:
     """Return the manifest of a folder that is a data set; None of any other."""
     try:
         data = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return None
     return data if isinstance(data, dict) and data.get("kind") == KIND else None
 

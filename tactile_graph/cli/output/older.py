@@ -35,5 +35,5 @@ def stays(output: str) -> str:
 def _ended_early(output: str) -> bool:
     try:
         return json.loads(sidecar(output).read_bytes())["complete"] is False
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return False

@@ -172,7 +172,7 @@ def _of_texts(cells: tuple[str, ...], is_text: bool) -> Column:
 def _units_beside(path: Path) -> dict[str, str]:
     try:
         told = json.loads(sidecar(path).read_text(encoding="utf-8"))["columns"]
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return {}
     return told if isinstance(told, dict) else {}
 
@@ -187,6 +187,9 @@ def _json_lines(path: Path) -> Iterator[Lines]:
                     row = json.loads(text)
                 except ValueError as error:
                     raise DataError(f"{path}:{number}", f"is no JSON: {error}") from error
+                except RecursionError as error:
+                    what = "is no line of a run: nested too deep"
+                    raise DataError(f"{path}:{number}", what) from error
                 if not isinstance(row, dict) or not isinstance(row.get("outputs"), dict):
                     raise DataError(f"{path}:{number}", "is no line of a run: has no 'outputs'")
                 for name in ("frame", "time_s"):

@@ -25,7 +25,7 @@ class Process:
     """
 
     def __init__(self, module: str = "tactile_graph.engine.calls.isolated_worker") -> None:
-        command = [sys.executable, "-m", module]
+        command = [sys.executable, "-P", "-m", module]
         with out_of_reach():
             self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         assert self._process.stdin is not None

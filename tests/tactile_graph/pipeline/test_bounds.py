@@ -2,19 +2,41 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 import yaml
 
-from helpers_graphs import registry
-from tactile_graph import load, loads
+from helpers_graphs import STEPS, registry
+from tactile_graph import Image, load, loads
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.pipeline import document
 from tactile_graph.pipeline import load as module
 
 LEAF = "pipeline: leaf\nnodes: {a: {step: read, in: frame}}\noutputs: [a]\n"
+
+WHEN = """\
+pipeline: when
+nodes:
+  named: {step: named, in: frame}
+  a: {step: read, in: frame}
+  b: {step: read, in: frame, when: "CONDITION"}
+outputs: [b]
+"""
+
+
+class Named(NamedTuple):
+    """Fields that are texts and lists."""
+
+    word: str
+    words: list[str]
+    sizes: list[float]
+
+
+def named(image: Image) -> Named:
+    return Named("b", ["b"], [1.0])
 
 
 def nested(folder: Path, levels: int, uses: int = 1) -> Path:
@@ -33,9 +55,9 @@ def read_files(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     read: list[Path] = []
     text = module.text_of_file
 
-    def noted(path: Path) -> str:
+    def noted(path: Path, **how: bool) -> str:
         read.append(path)
-        return text(path)
+        return text(path, **how)
 
     monkeypatch.setattr(module, "text_of_file", noted)
     return read
@@ -114,6 +136,15 @@ def test_a_file_without_an_end_is_refused(tmp_path: Path) -> None:
         load(endless, registry())
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+def test_a_pipe_that_a_pipeline_names_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.yaml")
+    outer = tmp_path / "outer.yaml"
+    outer.write_text("pipeline: p\nnodes: {m: {use: pipe.yaml, in: frame}}\noutputs: [m]\n")
+    with pytest.raises(PipelineError, match=r"pipe\.yaml' is a pipe; save what it gives as a file"):
+        load(outer, registry())
+
+
 def test_what_is_no_pipeline_file_is_not_shown(tmp_path: Path) -> None:
     secret = tmp_path / "secret.txt"
     secret.write_text("root:x:0:0\n")
@@ -130,13 +161,25 @@ def test_what_is_no_pipeline_file_is_not_shown(tmp_path: Path) -> None:
         ("len([a] * 500000000) > 3", "arithmetic takes numbers, not a list"),
         ("'%1000000000d' % a == 'b'", "'%1000000000d' is a text"),
         ("len((1, 2) * a) > 3", "arithmetic takes numbers, not a list"),
+        ("min('%1000000000d', 'b') % 1 == 'b' and a > 0", "'%1000000000d' is a text"),
+        ("len(min(max(['b', 'c']), 'd') * 500000000) > a", "'b' is a text"),
+        ("a in max([1], [2]) * 500000000", "arithmetic takes numbers, not a list"),
+        ("a in max([[1], [2]]) * 500000000", "arithmetic takes numbers, not a list"),
+        ("len((named.word or named.word) * 500000000) > a", "named.word is a text"),
+        ("len(max(named.words) * 500000000) > a", "named.words is a text"),
+        ("len(max(named.words, named.words) * 500000000) > a", "not a list"),
     ],
 )
 def test_a_condition_cannot_ask_for_all_memory(condition: str, words: str) -> None:
-    text = LEAF.replace("{a:", f'{{b: {{step: read, in: frame, when: "{condition}"}}, a:')
+    text = WHEN.replace("CONDITION", condition)
     with pytest.raises(PipelineError) as told:
-        loads(text, registry=registry())
+        loads(text, registry=registry({**STEPS, "named": named}))
     assert words in str(told.value)
+
+
+def test_numbers_of_a_list_and_the_larger_of_two_can_be_reckoned_with() -> None:
+    when = "max(named.sizes) * 2 + min(a, len(named.words)) % 3 >= -max([1, a])"
+    assert loads(WHEN.replace("CONDITION", when), registry=registry({**STEPS, "named": named}))
 
 
 @pytest.mark.slow

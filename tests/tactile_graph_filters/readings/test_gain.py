@@ -1,3 +1,6 @@
+import gzip
+import os
+
 import numpy as np
 import pytest
 
@@ -22,11 +25,13 @@ def test_an_element_with_gain_zero_becomes_invalid():
     assert both.valid.tolist() == [[False, False]]
 
 
-@pytest.mark.parametrize("ending", [".npy", ".csv"])
+@pytest.mark.parametrize("ending", [".npy", ".csv", ".csv.gz"])
 def test_gains_can_be_read_from_a_file(tmp_path, ending):
     path = tmp_path / f"gains{ending}"
     if ending == ".npy":
         np.save(path, np.array([[1.0, 4.0]]))
+    elif ending == ".csv.gz":
+        path.write_bytes(gzip.compress(b"1,4\n"))
     else:
         path.write_text("1,4\n")
     assert Gain(elements=str(path))(image_of([[2.0, 8.0]])).values.tolist() == [[2.0, 2.0]]
@@ -39,6 +44,24 @@ def test_a_file_that_is_no_table_is_refused(tmp_path):
         Gain(elements=str(path))
     with pytest.raises(DataError, match=r"none\.csv: must hold a table of gains"):
         Gain(elements=str(tmp_path / "none.csv"))
+
+
+def test_a_file_far_larger_than_any_pad_is_not_read(tmp_path):
+    array, packed = tmp_path / "gains.npy", tmp_path / "gains.csv.gz"
+    np.lib.format.open_memmap(array, "w+", np.float64, (20_000, 20_000))  # takes no room
+    packed.write_bytes(gzip.compress(b"1," * 10_000_000, 1))
+    for path, words in ((array, "3,200 MB or more, allowed are 16"), (packed, "16 MB or more")):
+        with pytest.raises(DataError, match=words):
+            Gain(elements=str(path))
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+def test_what_has_no_end_is_not_opened(tmp_path):
+    pipe = tmp_path / "gains.csv"
+    os.mkfifo(pipe)
+    for path in (pipe, "/dev/zero"):
+        with pytest.raises(DataError, match="is no plain file"):
+            Gain(elements=str(path))
 
 
 @pytest.mark.parametrize(

@@ -99,3 +99,13 @@ def test_a_url_that_leads_nowhere_is_told(url: str, message: str) -> None:
     got: Any = opening(url)
     assert got.startswith(f"port {url!r} cannot be opened: ")
     assert message in got
+
+
+@pytest.mark.parametrize("option", ["file={}", "raw&file={}", "fil%65={}"])
+def test_a_port_that_would_be_written_to_a_file_is_refused(tmp_path: Path, option: str) -> None:
+    victim = tmp_path / "victim"
+    victim.write_text("kept")
+    for scheme in ("spy", "SPY"):
+        message = opening(f"{scheme}:///dev/no-such-port?{option.format(victim)}")
+        assert "cannot be opened: spy:// writes no file here" in message
+        assert victim.read_text() == "kept"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import struct
 import zlib
 from pathlib import Path
@@ -23,6 +24,7 @@ from tactile_graph_sources.readers.arrays import npz as npz_reader
 from tactile_graph_sources.readers.arrays.archive import opened
 from tactile_graph_sources.readers.logs import mcap_chunks
 from tactile_graph_sources.readers.text import json_stack
+from tactile_graph_sources.scene import load_scene
 from tactile_graph_sources.stores.journal import read_journal
 
 
@@ -67,6 +69,56 @@ def test_datasets_that_only_together_unpack_to_far_too_much_are_refused(tmp_path
     told = "datasets 'frame0', 'frame1', 'frame2' and 1 more unpack to 256 MB, of which 0.0 are wri"
     with pytest.raises(DataError, match=told):
         frames_of(tmp_path / "a.h5")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("n", "kind"), [(5, "S100000000"), (10_000_000, "S4")])
+def test_times_that_are_texts_are_not_unpacked_out_of_proportion(
+    tmp_path: Path, n: int, kind: str
+) -> None:
+    """A text takes some bytes, however short it is."""
+    h5py = pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["values"] = np.ones((5, 4, 4))
+        file.create_dataset("time", (n,), kind, chunks=(1 if n == 5 else 1000,))
+    with pytest.raises(DataError, match=r"dataset 'time' unpacks to (500|1,200) MB, of which 0.0 "):
+        frames_of(tmp_path / "a.h5")
+    zarr = pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
+    root = zarr.open_group(tmp_path / "a.zarr", mode="w", zarr_format=2)
+    root.create_array("values", shape=(5, 4, 4), dtype="f8")[:] = 1.0
+    root.create_array("time", shape=(n,), chunks=(1 if n == 5 else 1000,), dtype=kind)
+    with pytest.raises(DataError, match=r"array 'time' would unpack to (500|1,200) MB, of which "):
+        frames_of(tmp_path / "a.zarr")
+
+
+def test_texts_that_are_all_one_long_text_are_not_read_to_their_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    h5py = pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
+    monkeypatch.setattr(hdf5, "LARGE", 4_000_000)
+    path, n, long = tmp_path / "a.h5", 3000, 100_000
+    with h5py.File(path, "w") as file:
+        file["values"] = np.ones((5, 4, 4))
+        file["time"] = np.array(["x" * long, *["y"] * (n - 1)], h5py.string_dtype())
+        offset = file["time"].id.get_offset()
+    content = bytearray(path.read_bytes())
+    content[offset : offset + 16 * n] = content[offset : offset + 16] * n
+    path.write_bytes(content)
+    with pytest.raises(
+        DataError, match=r"texts of 'time' unpack to more than \d+ MB, of which 0\.\d"
+    ):
+        frames_of(path)
+
+
+@pytest.mark.slow
+def test_many_texts_of_any_length_are_times(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["values"] = np.ones((3000, 4, 4))
+        file["time"] = np.array([str(i / 100) for i in range(3000)], h5py.string_dtype())
+    found, _ = frames_of(tmp_path / "a.h5")
+    assert [f.time_s for f in found[:3]] == [0.0, 0.01, 0.02]
+    assert found[-1].time_s == pytest.approx(29.99)
 
 
 def test_an_archive_with_a_long_list_of_members_is_not_listed(
@@ -222,3 +274,11 @@ def test_a_preset_is_read_as_strictly_as_a_pipeline(text: str, tmp_path: Path) -
     (tmp_path / "a.yaml").write_text(text)
     with pytest.raises(TactileGraphError):
         load_preset(str(tmp_path / "a.yaml"))
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+@pytest.mark.parametrize("load", [load_pad, load_scene])
+def test_a_pad_and_a_scene_are_not_waited_for(tmp_path: Path, load: Any) -> None:
+    os.mkfifo(tmp_path / "a.yaml")
+    with pytest.raises(UsageError, match=r"a\.yaml' is a pipe; save what it gives as a file first"):
+        load(str(tmp_path / "a.yaml"))

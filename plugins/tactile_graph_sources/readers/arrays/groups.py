@@ -18,7 +18,7 @@ from tactile_graph_sources.readers.arrays.datasets import (
     numbered,
 )
 from tactile_graph_sources.readers.arrays.packing import Packing, packing_of
-from tactile_graph_sources.readers.arrays.times import bare, time_among
+from tactile_graph_sources.readers.arrays.times import TEXTS, bare, time_among
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.words.names import named
 from tactile_graph_sources.readers.words.preamble import described_by
@@ -26,6 +26,8 @@ from tactile_graph_sources.readers.words.preamble import described_by
 LONGEST_TEXT = 1000
 """Letters of a text that says something of the stack."""
 TEXT = "text"
+LEAST_TEXT = 120
+"""Bytes that a text takes in memory, however short it is."""
 _NOT_READ = {
     "c": ("complex", "save it as real numbers, such as abs(array)"),
     "O": ("objects or rows of unlike lengths",
@@ -56,6 +58,7 @@ class Group(NamedTuple):
         Returns the values of the stack, from its array and how it is packed.
     texts : callable
         Returns the texts in what is not read, by its name; none where it holds something else.
+        Refuses what is too large, as ``check`` does.
     packing : callable
         Returns how an array is packed, from the file, its name and itself.
     framed : frozenset of str
@@ -89,6 +92,11 @@ def packing(where: str, name: str, array: Any) -> Packing:
     return packing_of(where, name, array.dtype, attributes_of(array))
 
 
+def item_bytes(dtype: np.dtype[Any]) -> int:
+    """Return how many bytes an item of an array takes in memory, at the least."""
+    return max(dtype.itemsize, LEAST_TEXT) if dtype.kind in TEXTS else dtype.itemsize
+
+
 def _values_beside(group: Group) -> Iterator[tuple[str, Any]]:
     """Yield what arrays of one or two numbers, or of one text, hold; not those of other files."""
     found = {n: a for n, a in group.arrays.items() if a.dtype.kind in "buif" and a.size in (1, 2)}
@@ -97,7 +105,8 @@ def _values_beside(group: Group) -> Iterator[tuple[str, Any]]:
         try:
             array = found[name] if name in found else group.root[name]
             group.check({name: array})
-            value: Any = array[()] if array.size <= LONGEST_TEXT else None
+            most = 1 if array.dtype.kind in "OT" else LONGEST_TEXT  # of texts of any length
+            value: Any = array[()] if array.size <= most else None
             if name in texts and not _is_text(value):
                 value = group.texts(name)  # in cells of MATLAB's
         except Exception:  # of a type that the library does not know, or far too large
@@ -176,7 +185,8 @@ def _worded_times(reading: Reading, group: Group) -> tuple[NDArray[Any] | None, 
     texts = group.texts(name) if name else ()
     if name and not texts:
         reading.assume(f"times left out, as {name!r} is not read: {several[name]}")
-    return (np.array(texts), name) if len(texts) > 1 else (None, "")
+    short = np.array([text[:LONGEST_TEXT] for text in texts], object)
+    return (short, name) if len(texts) > 1 else (None, "")
 
 
 def _refuse_fields(

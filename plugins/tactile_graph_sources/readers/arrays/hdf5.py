@@ -15,7 +15,14 @@ from tactile_graph.errors import DataError, without
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays import node_images
 from tactile_graph_sources.readers.arrays.datasets import Held, Unread, frames_of
-from tactile_graph_sources.readers.arrays.groups import TEXT, Group, held_in, packing, unread
+from tactile_graph_sources.readers.arrays.groups import (
+    TEXT,
+    Group,
+    held_in,
+    item_bytes,
+    packing,
+    unread,
+)
 from tactile_graph_sources.readers.arrays.matlab import of_matlab
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import OF_TIMES, Reading
@@ -89,7 +96,7 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
             check = partial(_check_size, where)
 
             def texts(name: str) -> list[str]:
-                return _texts(h5py, file[name]) if others[name].what == TEXT else []
+                return _texts(h5py, name, file[name]) if others[name].what == TEXT else []
 
             group = Group(
                 "dataset", sets, others, file, check, lambda d, how: how.unpacked(d[()]),
@@ -133,15 +140,46 @@ def _referred(h5py: ModuleType, dataset: Any) -> list[Any]:
     return found
 
 
-def _texts(h5py: ModuleType, dataset: Any) -> list[str]:
-    """Return the texts of a dataset: its items, MATLAB's rows of letters or its cells of them."""
-    if h5py.check_ref_dtype(dataset.dtype):
-        return [" ".join(_texts(h5py, item)) for item in _referred(h5py, dataset)]
-    values = dataset[()]
+def _texts(h5py: ModuleType, name: str, dataset: Any) -> list[str]:
+    """Return the texts of a dataset: its items, MATLAB's rows of letters or its cells of them.
+
+    Raises
+    ------
+    DataError
+        If they are far larger than what is written.
+    """
+    where = dataset.file.filename
+    if not h5py.check_ref_dtype(dataset.dtype):
+        _check_size(where, {name: dataset})
+        return _letters(name, dataset)
+    items = {f"{name}{{{k}}}": d for k, d in enumerate(_referred(h5py, dataset), 1)}
+    _check_size(where, items)
+    return [" ".join(_letters(*item)) for item in items.items()]
+
+
+def _letters(name: str, dataset: Any) -> list[str]:
     if _class_of(dataset) == "char":
-        return ["".join(map(chr, row)) for row in np.atleast_2d(values.T)]
-    texts = np.ravel(values).tolist()
-    return [v.decode("utf-8", "replace") if isinstance(v, bytes) else str(v) for v in texts]
+        return ["".join(map(chr, row)) for row in np.atleast_2d(dataset[()].T)]
+    found: list[str] = []
+    n_letters, written = 0, dataset.file.id.get_filesize()
+    for part in _parts(dataset, written):
+        found += [v.decode("utf-8", "replace") if isinstance(v, bytes) else str(v) for v in part]
+        n_letters += sum(map(len, part))
+        if n_letters > max(LARGE, MOST_TIMES * written):
+            told = f"the texts of {name!r} unpack to more than {n_letters / 1e6:,.0f} MB, of which "
+            raise DataError(dataset.file.filename, f"{told}{written / 1e6:,.1f} are written")
+    return found
+
+
+def _parts(dataset: Any, written: int) -> Iterator[list[Any]]:
+    """Yield the items of a dataset of texts, few of those of which each may be the whole file."""
+    most = max(MOST_TIMES, LARGE // written)
+    if dataset.dtype.kind != "O" or dataset.size <= most:
+        yield np.ravel(dataset[()]).tolist()
+    elif dataset.size in dataset.shape:  # those in several rows are no times
+        axes = (slice(None),) * dataset.shape.index(dataset.size)
+        for start in range(0, dataset.size, most):
+            yield np.ravel(dataset[(*axes, slice(start, start + most))]).tolist()
 
 
 def _in_cells(h5py: ModuleType, dataset: Any) -> _Cells | Unread:
@@ -238,7 +276,7 @@ def _check_size(where: str, datasets: Mapping[str, Any]) -> None:
         if dataset.is_virtual or dataset.external:
             told = f"dataset {name!r} lies in other files; save its values in this one"
             raise DataError(where, told)
-    bytes_ = sum(d.size * d.dtype.itemsize for d in datasets.values())
+    bytes_ = sum(d.size * item_bytes(d.dtype) for d in datasets.values())
     packed = sum(d.id.get_storage_size() for d in datasets.values())
     if bytes_ > max(LARGE, MOST_TIMES * packed):
         which = f"dataset{'s' if len(datasets) > 1 else ''} {', '.join(map(repr, [*datasets][:3]))}"

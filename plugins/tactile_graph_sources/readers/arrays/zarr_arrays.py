@@ -25,6 +25,7 @@ from tactile_graph_sources.readers.arrays.groups import (
     Group,
     attributes_of,
     held_in,
+    item_bytes,
     packing,
     unread,
 )
@@ -112,6 +113,7 @@ def _held(reading: Reading, zarr: Any) -> Held:
     def texts(name: str) -> list[str]:
         if others[name].what != TEXT or whole is None:
             return []
+        check({name: whole[name]})
         found = np.ravel(whole[name][()]).tolist()
         return [t.decode("utf-8", "replace") if isinstance(t, bytes) else str(t) for t in found]
 
@@ -173,7 +175,7 @@ def _check_size(where: str, arrays: Mapping[str, Any]) -> None:
             -(-n // max(c, 1)) for n, c in zip(array.shape, array.chunks, strict=True)
         )
         whole = math.prod(n * c for n, c in zip(along, _pieces(array), strict=True))
-        unpacked += whole * array.dtype.itemsize
+        unpacked += whole * item_bytes(np.dtype(array.dtype))
         packed += array.nbytes_stored()
     which = f"array{'s' if len(arrays) > 1 else ''} {', '.join(map(repr, [*arrays][:3]))}"
     if unpacked > max(LARGE, MOST_TIMES * packed):

@@ -8,6 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from helpers_cli import DISCS, install
+from tactile_graph.cli.ahead import opened
 from tactile_graph.cli.app import cli
 from tactile_graph.cli.commands.prepare import FRAMES, prepared
 from tactile_graph.wires import Mask
@@ -51,6 +52,14 @@ def test_a_pipeline_that_writes_is_left_out(
     install(monkeypatch, hand_made, steps={"note": note})
     assert prepared(str(noting)) == f"{noting}: not prepared, a step of it writes"
     assert not seen
+
+
+def test_a_device_is_not_opened(tmp_path: Path) -> None:
+    port = "{step: serial, with: {port: /dev/no-such-port, preset: itas}}"
+    text = PLAIN.replace("{step: simulate, with: {scene: disc-1, frames: 20}}", port)
+    path = written(tmp_path, text)
+    assert prepared(path) == f"{path}: not prepared, its source reads a device"
+    assert not list(opened([path], [], []))
 
 
 def test_a_pipeline_that_fails_is_told(hand_made: Path) -> None:

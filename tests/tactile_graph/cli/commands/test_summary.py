@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from helpers_cli import call
+from tactile_graph.cli.output.data_set import MANIFEST
 from tactile_graph.cli.summary import reading
 from tactile_graph.cli.summary import summary as summaries
 from tactile_graph.cli.summary.reading import chunks
@@ -216,6 +217,7 @@ def test_a_narrow_terminal_shows_names_and_numbers_whole_and_says_what_is_left_o
         (CSV.encode() + b"5,1\n", "bad:7: has 2 cells, the header 8"),
         (b"PAR1 and no more", "bad: is no whole Parquet file"),
         (b'{"outputs": {}}\n{"x"\n', "bad:2: is no JSON"),
+        (b'{"frame":0,"outputs":' + b'{"a":' * 9000 + b"1" + b"}" * 9001, "bad:1: is no line of a"),
         (b"{}\n", "bad:1: is no line of a run: has no 'outputs'"),
         (b"\xff\xfe\x00", "bad: is no result file: no UTF-8"),
     ],
@@ -227,6 +229,15 @@ def test_what_is_no_result_is_told_where_and_why(content: bytes, said: str) -> N
     done = call("summary", "bad")
     assert done.exit_code == 2
     assert said in done.stderr
+
+
+def test_units_and_a_manifest_that_are_nested_too_deep_tell_nothing() -> None:
+    Path("a.csv").write_text("frame,load.outcome,load.total\n0,value,1\n")
+    Path("a.csv.meta.json").write_text("[" * 9000)
+    assert call("summary", "a.csv").exit_code == 0
+    Path("folder").mkdir()
+    Path("folder", MANIFEST).write_text("[" * 9000)
+    assert "folder: is no data set" in call("summary", "folder").stderr
 
 
 def test_a_folder_that_is_no_data_set_and_a_missing_file_are_told() -> None:
