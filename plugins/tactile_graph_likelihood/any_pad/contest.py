@@ -94,14 +94,15 @@ def _first_look(
     lead = begun.sought(readings, lead)
     if lead.mode.height == -math.inf:
         return readings, every, {}
-    its = begun
-    if its is every[first] and (strays := its.strays(readings, lead)):
-        its, lead = its.likelier_with(strays, readings, lead)
-    if its is not every[first]:
-        every = {name: any_pad.knowing(its.told.noise.strays) for name, any_pad in every.items()}
+    knowing = begun
+    if knowing is every[first] and (strays := knowing.strays(readings, lead)):
+        knowing, lead = knowing.likelier_with(strays, readings, lead)
+    if knowing is not every[first]:
+        strays = knowing.told.noise.strays
+        every = {name: any_pad.knowing(strays) for name, any_pad in every.items()}
     readings, lead = every[first].cleared(readings, lead)
-    its, readings, lead = every[first].on_told_foam(readings, lead)
-    if its is not every[first]:
+    under, readings, lead = every[first].on_told_foam(readings, lead)
+    if under is not every[first]:
         every = {name: any_pad.told_of_foam for name, any_pad in every.items()}
     found, is_disc = {first: lead}, every[first].told.kind == DISC and lead.fit.surprise > POOR
     for name, any_pad in every.items():

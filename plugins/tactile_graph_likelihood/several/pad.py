@@ -182,7 +182,7 @@ class OnPad:
     def settled(self) -> OnPad:
         """Return what these outlines come to, brought to their joint mode."""
         parts = [replace(it, outlines=it.scene.settled(it.outlines)[0]) for it in self.parts]
-        return OnPad(parts, self.counts)
+        return OnPad(parts, self.counts, self.beyond)
 
     def settled_on(self, side_cm: float) -> OnPad:
         """Return what these outlines come to on elements of other sides, in the same places."""
