@@ -4,8 +4,8 @@ Run with ``python benchmarks/small_names.py``; ``--objects N`` of each range of 
 ``--seed N``, ``--pipelines`` those to ask. Discs, ellipses and rectangles are equally likely, radii
 and half sides log-uniform over a range, all told the pipelines, and pressed at so many grams an
 element; the project's own pad. A row holds how many are named rightly, the mean probability told
-for the name (the same, if probabilities are true), the mean of -ln of the true shape's probability (1.10 says
-nothing), and by what was told for any shape how often that was true.
+for the name (the same, if probabilities are true), the mean of -ln of the true shape's probability
+(1.10 says nothing), and by what was told for any shape how often that was true.
 """
 
 from __future__ import annotations
