@@ -2,7 +2,7 @@
 
 Run with ``python benchmarks/unknown_pads.py``; ``--shape rectangle`` takes rectangles instead of
 discs, ``--scenes N`` so many of a kind, ``--kinds`` some of the kinds only, ``--markdown FILE``
-writes the tables, ``--workers N`` shares the kinds among processes (times: measure with one). All
+writes the tables, ``--told-foam-cm CM`` tells ``locate`` of foam, ``--workers N`` shares the kinds among processes (times: measure with one). All
 pipelines are told the thesis' pad; what lies on the bench is one of the kinds of
 `second_simulator`, which shares no code with the project's own pads.
 
@@ -214,11 +214,16 @@ def main() -> None:
     parser.add_argument(
         "--kinds", nargs="*", choices=[*KINDS, *MORE_KINDS], default=[*KINDS], metavar="KIND"
     )
+    parser.add_argument("--told-foam-cm", type=float, help="foam that ``locate`` is told of")
     parser.add_argument("--markdown", type=Path)
     add_workers(parser)
     args = parser.parse_args()
     asked = Asked(args.shape, args.scenes, args.seed)
     pipelines = [load(name) for name in PIPELINES[asked.shape]]
+    if args.told_foam_cm is not None:
+        told = {"contact": {"foam_cm": args.told_foam_cm}}
+        output = next(iter(pipelines[-1].outputs))
+        pipelines[-1] = pipelines[-1].with_settings({f"{output}.pad": told})
     warm_up()
     scores_of = partial(scores, pipelines, asked)
     scores_of(args.kinds[0])

@@ -94,6 +94,9 @@ PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 2.8}
 """Share that is added to the variance where a pressure of one or two numbers explains the load: no
 face presses quite like that, and foam shares gains that the fit takes for the outline's."""
 
+TOLD_FOAM = 0.8
+"""The same under foam that is told, whose width nobody knows to better than a tenth."""
+
 UNSURER = 1.3
 """Times the variance of a normal distribution around an outline with an angle that a sample of it
 would come to, for a quick answer: between two rows of elements nothing holds its sides."""
@@ -471,7 +474,8 @@ class AnyPad:
 
     def _wider(self, part: str) -> float:
         """Return by how much the variance under a pressure is larger than that of its fit."""
-        wider = 1.0 + PRESSED.get(part, 0.0)
+        told = TOLD_FOAM if part == EVEN and self.told.noise.foam_cm > 0.0 else 0.0
+        wider = 1.0 + PRESSED.get(part, told)
         if self.told.kind == DISC:
             return wider
         if self.quick:
