@@ -28,6 +28,11 @@ FEW = 12.0
 """Touched elements by which shapes are told apart half as well as their evidence says."""
 
 
+FEWEST = 5
+"""Touched elements from which on shapes are told apart: an ellipse has as many unknowns, and around
+fewer its top is as flat as the pad is wide."""
+
+
 class Located(NamedTuple):
     """The likeliest shape, its probability among those asked for, and theirs."""
 
@@ -51,7 +56,9 @@ class Locate:
     Notes
     -----
     By Bayes' rule over the shapes' evidence, over all pressures that were looked at, worth as many
-    times less as neighbouring elements hang together. See `locate_disc` for what is estimated.
+    times less as neighbouring elements hang together, and less the fewer elements are touched.
+    Where fewer than five are, it is a disc if one is asked for, all shapes being as likely as
+    before. See `locate_disc` for what is estimated.
     """
 
     stateless = True
@@ -113,12 +120,23 @@ class Locate:
 
     def _chosen(self, readings: Readings, every: dict[str, AnyPad]) -> Located:
         every = {name: any_pad.suited(readings) for name, any_pad in every.items()}
+        if "disc" in every and readings.touched < FEWEST:
+            return _as_disc(every, readings)
         readings, tops = tops_of_each(every, readings)
         chance = probabilities(tops, readings)
         best = max(chance, key=chance.__getitem__)
         shares = dict.fromkeys(Located._fields[3:], 0.0) | chance
         shape = likely(every[best].around(readings, tops[best]))
         return Located(shape, best, chance[best], **shares)
+
+
+def _as_disc(every: Mapping[str, AnyPad], readings: Readings) -> Located:
+    """Return the disc as `locate_disc` does, no more likely than any other shape."""
+    its, readings, even = every["disc"].first(readings)
+    shape = likely(its.around(readings, its.completed(readings, even)))
+    chance = dict.fromkeys(every, 1.0 / len(every))
+    shares = dict.fromkeys(Located._fields[3:], 0.0) | chance
+    return Located(shape, "disc", chance["disc"], **shares)
 
 
 def probabilities(

@@ -116,6 +116,9 @@ FEW_POINTS = 64
 FINER = 2.0
 """By how much more precisely an outline is sampled the fewer elements are touched."""
 
+THINNEST = 0.12
+"""Half of a rectangle's breadth in pitches, at least, where nothing else is told: a book's edge."""
+
 PRESSURES: dict[str, list[float]] = {EVEN: [], **FIRST}
 """What each pressure estimates beside an even face's numbers, where its fit begins."""
 
@@ -162,6 +165,8 @@ class AnyPad:
     def of(cls, settings: LocateSettings, kind: int) -> AnyPad:
         """Return the fits of a kind of outline; a pad that says it is even has not been asked."""
         told, untold = settings.model(kind), Noise()
+        if kind == RECTANGLE:
+            told = changed(told, smallest_pitches=THINNEST)
         foam_cm = told.noise.foam_cm
         told = changed(told, noise=changed(told.noise, foam_cm=0.0))
         sigma, voids = told.noise.sigma, told.noise.voids

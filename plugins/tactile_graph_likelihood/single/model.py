@@ -92,7 +92,9 @@ class Model:
         Probability beforehand that the outline lies fully on the pad; its centre always does.
     smallest_cm, largest_cm : float
         Range of radii, half axes and half sides, over which they are log-uniform; 0 and infinity
-        for 0.4 pitches and the pad's diagonal.
+        for so many pitches and the pad's diagonal.
+    smallest_pitches : float
+        The least of them where no other is told, but on a single row, which tells of none.
     precision : float
         The posterior mean's error, over the posterior's standard deviation, at which sampling
         ends.
@@ -109,6 +111,7 @@ class Model:
     whole: float = 0.0
     smallest_cm: float = 0.5
     largest_cm: float = 15.0
+    smallest_pitches: float = SMALLEST_PITCHES
     precision: float = 0.15
     most_points: int = 1024
     seed: int = 0
@@ -317,7 +320,9 @@ class Model:
     def _prior(self, readings: Readings) -> Values:
         """Return the same, which is everybody's."""
         place = readings.grid.tobytes(), readings.states.shape
-        return _prior_of(place, self.smallest_cm, self.largest_cm, self.whole)
+        pitches = SMALLEST_PITCHES if is_row(readings) else self.smallest_pitches
+        smallest_cm = self.smallest_cm or pitches * float(readings.grid[2])
+        return _prior_of(place, smallest_cm, self.largest_cm, self.whole)
 
     def _noise_at(self, pitch_cm: float) -> NoiseTaken:
         kept = self._kept.get(pitch_cm)
@@ -395,12 +400,10 @@ def _prior_of(
 ) -> Values:
     """Return a prior vector on elements of a grid, as bytes, of so many rows and columns."""
     grid = np.frombuffer(place[0])
-    (left, top, pitch), (width, height) = grid[:3].tolist(), size_of(grid, place[1])
-    smallest = smallest_cm or SMALLEST_PITCHES * pitch
-    largest = largest_cm
-    if not math.isfinite(largest):
-        largest = max(math.hypot(width, height), 2.0 * smallest)
-    return np.array([left, top, width, height, smallest, largest, whole, math.nan, 0.0])
+    (left, top), (width, height) = grid[:2].tolist(), size_of(grid, place[1])
+    if not math.isfinite(largest_cm):
+        largest_cm = max(math.hypot(width, height), 2.0 * smallest_cm)
+    return np.array([left, top, width, height, smallest_cm, largest_cm, whole, math.nan, 0.0])
 
 
 @cache

@@ -11,7 +11,7 @@ from helpers_likelihood import made
 from tactile_graph import Image, load
 from tactile_graph_likelihood.any_pad.choose import Locate, probabilities
 from tactile_graph_likelihood.any_pad.contest import _first_look, tops_of_each
-from tactile_graph_likelihood.any_pad.locate import LocateRectangle
+from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateRectangle
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.single.any_pressure import EVEN
 from tactile_graph_likelihood.single.model import EVERY, FIRST, MORE, SAME, Model
@@ -138,3 +138,31 @@ def test_strays_are_believed_where_readings_are_likelier_for_them():
             learned.append(fits is not its)
     assert sum(learned[:8]) >= 7
     assert sum(learned[8:]) <= 1
+
+
+@many
+def test_a_few_elements_are_a_disc_as_likely_as_anything_else():
+    values = np.zeros((16, 16))
+    values[7:9, 7] = 3.0, 2.0
+    image = Image(values, (1.3, 1.3), (-0.15, -0.15), "volt")
+    found, disc = Locate()(image), LocateDisc()(image)
+    assert (found.name, found.probability) == ("disc", found.rectangle)
+    assert found.shape.centre_std_cm == disc.centre_std_cm < 1.0
+    assert Locate(shapes=["ellipse", "rectangle"])(image).name != "disc"
+
+
+@many
+def test_a_books_edge_is_as_narrow_as_it_is():
+    rng, fine = np.random.default_rng(3), np.arange(0.05, 1.0, 0.1)
+    at = (1.3 * np.arange(16)[:, None] + fine).ravel()
+    held = 0
+    for turn in np.linspace(0.2, 1.4, 10):
+        x, y = at[None, :] - 10.0, at[:, None] - 9.7
+        cos, sin = np.cos(turn), np.sin(turn)
+        lies = (abs(x * cos - y * sin) < 7.5) & (abs(x * sin + y * cos) < 0.25)
+        share = (lies * 1.0).reshape(16, 10, 16, 10).mean(axis=(1, 3))
+        loads = 300.0 * share * np.exp(0.3 * rng.standard_normal(share.shape))
+        image = Image(np.where(loads > 3.0, loads, 0.0), (1.3, 1.3), (-0.15, -0.15), "gram")
+        found = LocateRectangle()(image)
+        held += abs(found.breadth_cm - 0.5) < 2.5 * found.breadth_std_cm
+    assert held >= 8
