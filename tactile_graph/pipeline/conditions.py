@@ -233,16 +233,20 @@ def reckons(node: ast.AST) -> bool:
     return isinstance(node, ast.BinOp)
 
 
-_WIDE = frozenset({float, int, np.float64})
+_WIDE = frozenset({float, int, np.float64, np.int64})
+_LARGEST = np.iinfo(np.int64).max
 
 
 def _wide(value: Any) -> Any:
-    """Return a number that does not overflow early: of NumPy's types, some end at 127."""
+    """Return a number that does not overflow early: of NumPy's types, some end at 127.
+
+    It stays one of NumPy's, which divide by 0.
+    """
     if value.__class__ in _WIDE:
         return value
     if isinstance(value, np.integer | np.bool_):
-        return int(value)
-    return np.float64(value) if isinstance(value, np.floating) else value
+        return np.int64(value) if value <= _LARGEST else int(value)
+    return np.float64(value) if isinstance(value, np.float16) else value
 
 
 class _Compiler:
