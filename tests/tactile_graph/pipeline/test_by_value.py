@@ -223,3 +223,8 @@ def test_nodes_whose_settings_differ_in_what_no_text_shows_have_keys_of_their_ow
     one, other = (loads(text.format(by), "p.yaml", registry({"noisy": noisy})) for by in (1.0, 7.0))
     assert one.nodes["n"].key != other.nodes["n"].key
     assert one.resolved() != other.resolved()
+
+
+def test_numbers_of_numpy_as_keys_are_told_as_the_ones_they_are_equal_to() -> None:
+    given = {np.int64(3): 1, np.float64(0.5): 2, np.str_("a"): 3}
+    assert repr(plain(given)) == "{'3': 1, '0.5': 2, 'a': 3}"
