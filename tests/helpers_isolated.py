@@ -101,6 +101,17 @@ class NeedsFile:
         return int(image.values[0, 0])
 
 
+class NeedsDevice(NeedsFile):
+    """Looks a while for a file that is not there; notes beside it how often it was made."""
+
+    def __init__(self, *, path: str) -> None:
+        with open(f"{path}.tries", "a") as tries:
+            tries.write("+")
+        if not os.path.exists(path):
+            time.sleep(0.3)
+        super().__init__(path=path)
+
+
 class Timed:
     """Counts its calls and is told of time; crashes where the image says so."""
 

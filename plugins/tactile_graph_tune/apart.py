@@ -91,7 +91,8 @@ def without_seen(choosing: Sequence[Frame], held_out: Sequence[Frame]) -> list[F
 def without_repeats(frames: Sequence[Frame]) -> list[Frame]:
     """Return frames less those whose image an earlier recording holds, too, as in a converted copy.
 
-    Frames where nothing lies may well be alike in two recordings, and stay.
+    Frames where nothing lies, or where what lies leaves all cells alike, may well be alike in two
+    recordings, and stay.
 
     Parameters
     ----------
@@ -101,20 +102,26 @@ def without_repeats(frames: Sequence[Frame]) -> list[Frame]:
     Raises
     ------
     UsageError
-        If a recording has none in which something lies but such.
+        If a recording has none in which something is seen to lie but such.
     """
-    first = {_values_of(f): f.label for f in reversed(frames) if f.truth}
-    left = [f for f in frames if not f.truth or first[_values_of(f)] == f.label]
-    alone = {f.label for f in left if f.truth}
+    first = {_values_of(f): f.label for f in reversed(frames) if _is_seen(f)}
+    left = [f for f in frames if not _is_seen(f) or first[_values_of(f)] == f.label]
+    alone = {f.label for f in left if _is_seen(f)}
     for frame in frames:
-        if frame.truth and frame.label not in alone:
-            n = sum(bool(f.truth) for f in frames if f.label == frame.label)
+        if _is_seen(frame) and frame.label not in alone:
+            n = sum(_is_seen(f) for f in frames if f.label == frame.label)
             raise UsageError(
                 f"{frame.label}: all {n} frames in which something lies have, value by value, the "
                 f"images of frames of {first[_values_of(frame)]}; of several recordings some "
                 "choose and the others report, so give each once"
             )
     return left
+
+
+def _is_seen(frame: Frame) -> bool:
+    """Return whether something lies there, and the image tells of it."""
+    values = frame.image.values
+    return bool(frame.truth) and bool((values != values.flat[0]).any())
 
 
 def _values_of(frame: Frame) -> tuple[tuple[int, ...], bytes]:

@@ -10,6 +10,8 @@ from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import entry_points
 
+from tactile_graph.out_of_reach import end_safe_path
+
 GROUP = "tactile_graph"
 OWN = "tactile-graph"
 WANTED = (
@@ -33,4 +35,5 @@ def _import_all() -> None:
             import_module(name)
 
 
+end_safe_path()  # a user's own processes are forked from here, too
 _import_all()

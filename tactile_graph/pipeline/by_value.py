@@ -8,12 +8,14 @@ from __future__ import annotations
 import dataclasses
 import sys
 import uuid
+from collections import defaultdict
 from collections.abc import Hashable, Iterable, Mapping
 from datetime import date, datetime, time, timedelta
 from decimal import Decimal
 from enum import Enum
 from fractions import Fraction
 from functools import cached_property
+from itertools import count
 from pathlib import PurePath
 from types import BuiltinFunctionType, FunctionType, MappingProxyType, ModuleType
 from typing import Any
@@ -26,6 +28,7 @@ _TELLING = (
 _TIMES = (datetime, time)
 _untold: dict[int, tuple[object, str]] = {}
 """What cannot be looked into, and its text; kept, so that nothing else gets its id."""
+_numbers: defaultdict[str, count[int]] = defaultdict(count)
 
 
 def text_by_value(value: Any) -> str:
@@ -137,9 +140,15 @@ def _pickled(value: Any) -> str:
 
 
 def _of_its_own(value: Any) -> str:
-    """Return a text that nothing else has, nor this in another run."""
-    text = f"<{type(value).__qualname__} {uuid.uuid4()}>"
-    return _untold.setdefault(id(value), (value, text))[1]
+    """Return a text that nothing else has, and that a run which makes the same again repeats.
+
+    Seeds of random numbers hang on it: it counts those of a name as they are first asked for.
+    """
+    known = _untold.get(id(value))
+    if known is None:
+        name = str(getattr(value, "__qualname__", type(value).__qualname__))
+        known = _untold[id(value)] = value, f"<{name} {next(_numbers[name])}>"
+    return known[1]
 
 
 def _is_path(value: Any) -> bool:

@@ -233,16 +233,27 @@ def reckons(node: ast.AST) -> bool:
     return isinstance(node, ast.BinOp)
 
 
-_WIDE = frozenset({float, int, np.float64})
+def _signed(value: Any) -> Any:
+    number = int(value)
+    return np.int64(number) if number <= _LARGEST else number
+
+
+_LARGEST = int(np.iinfo(np.int64).max)
+_SMALL = (np.bool_, np.int8, np.int16, np.int32, np.intc, np.uint8, np.uint16, np.uint32, np.uintc)
+_WIDER: dict[type, Callable[[Any], Any]] = {
+    **dict.fromkeys(_SMALL, np.int64),
+    **dict.fromkeys((np.uint64, np.ulonglong), _signed),
+    np.float16: np.float64,
+}
 
 
 def _wide(value: Any) -> Any:
-    """Return a number that does not overflow early: of NumPy's types, some end at 127."""
-    if value.__class__ in _WIDE:
-        return value
-    if isinstance(value, np.integer | np.bool_):
-        return int(value)
-    return np.float64(value) if isinstance(value, np.floating) else value
+    """Return a number that does not overflow early: of NumPy's types, some end at 127.
+
+    It stays one of NumPy's, which divide by 0.
+    """
+    wider = _WIDER.get(value.__class__)
+    return value if wider is None else wider(value)
 
 
 class _Compiler:

@@ -16,7 +16,7 @@ def plain(value: Any) -> Any:
     A record is told in words, all of its fields and what these hold.
     """
     if isinstance(value, dict | Mapping):
-        named = {k if isinstance(k, str) else text_by_value(k): plain(v) for k, v in value.items()}
+        named = {_name(k): plain(v) for k, v in value.items()}
         if len(named) == len(value):
             return named
         return [[plain(k), plain(v)] for k, v in value.items()]  # 1 and "1"
@@ -29,6 +29,12 @@ def plain(value: Any) -> Any:
     if hasattr(value, "tolist") and _all_in_list(value):
         return value.tolist()
     return text_by_value(value)
+
+
+def _name(key: Any) -> str:
+    """Return a key as text: a number of NumPy's, which is equal to Python's, as that."""
+    key = key.tolist() if hasattr(key, "tolist") else key
+    return key if isinstance(key, str) else text_by_value(key)
 
 
 def _all_in_list(value: Any) -> bool:

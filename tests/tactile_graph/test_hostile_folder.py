@@ -34,7 +34,10 @@ def beside(_=None):
     return subprocess.run([sys.executable, script], check=True, capture_output=True).stdout
 """
 SCRIPT = """\
+import os
 import time
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 import numpy as np
 import own_steps
 from tactile_graph import Frame, Image, load, loads
@@ -54,6 +57,9 @@ def main():
     beside.close()
     workers = opened("", 1)
     print(workers.executor.submit(own_steps.beside).result(60).decode())
+    kind = "forkserver" if os.name == "posix" else "spawn"
+    with ProcessPoolExecutor(1, get_context(kind)) as own:
+        print(own.submit(own_steps.beside).result(60).decode())
     workers.end()
 
 if __name__ == "__main__":
@@ -117,5 +123,5 @@ def test_modules_beside_a_script_of_ones_own_are_found_by_all_its_processes(
     (own / "start.py").write_text(SCRIPT)
     process = started(folder)
     out, _ = process.communicate(timeout=120)
-    assert out.split() == ["42", "beside", "sibling"], out
+    assert out.split() == ["42", "beside", "sibling", "sibling"], out
     assert not (own / "told").exists()

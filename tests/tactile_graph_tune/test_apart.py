@@ -11,6 +11,7 @@ import pytest
 
 from helpers_cli import call
 from helpers_tune import frames
+from tactile_graph import Frame
 from tactile_graph.errors import UsageError
 from tactile_graph_tune.apart import check_recordings, without_repeats, without_seen
 
@@ -79,6 +80,15 @@ def test_a_recording_of_which_another_holds_all_is_refused() -> None:
     both = [replace(f, label=label) for label in ("one.npz", "two.npz") for f in frames(12)]
     with pytest.raises(UsageError, match=r"two.npz: all 8 frames .* of one.npz; .* give each once"):
         without_repeats(both)
+
+
+def test_what_leaves_all_cells_alike_is_no_frame_of_another_recording() -> None:
+    def alike(label: str, frame: Frame) -> Frame:
+        return replace(frame, label=label, image=frame.image.with_values(np.zeros((4, 4))))
+
+    one = [replace(f, label="one") for f in frames(12)]
+    light = [alike(label, f) for label in ("one", "two") for f in frames(12) if f.truth]
+    assert without_repeats([*one, *light]) == [*one, *light]
 
 
 def test_the_command_refuses_it(hand_made: Path) -> None:

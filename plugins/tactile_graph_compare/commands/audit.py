@@ -275,7 +275,7 @@ def error_table(found: Audit) -> Table:
     columns = ("guard", "quantity", "mean", "95 % from", "to", "both", "lost", "won")
     note = (
         "mean absolute error it brings in where both answer; negative is better; lost, won: "
-        "answers given only without it, only with it"
+        "answers given only without it, only with it; no bounds where fewer than six frames differ"
     )
     return Table("What guards cost in error", columns, tuple(rows), note, ("95 % from", "to"))
 

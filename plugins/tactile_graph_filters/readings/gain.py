@@ -21,7 +21,9 @@ from tactile_graph_filters.nan import finite, refuse_unbounded
 
 MOST_BYTES = 16_000_000
 """Of a file of gains, or of the numbers in it: more than any pad has elements for."""
-_UNPACKED: dict[str, Any] = {".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open}
+_UNPACKED: dict[str, Any] = {
+    ".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open, ".lzma": lzma.open,
+}  # fmt: skip
 _UNREADABLE = (OSError, ValueError, EOFError, zlib.error, lzma.LZMAError)
 
 
@@ -121,7 +123,7 @@ def _read(path: Path) -> NDArray[np.float64]:
         if path.suffix == ".npy":
             table: NDArray[Any] = np.lib.format.open_memmap(path, "r")
         else:
-            table = np.loadtxt(io.StringIO(_text(path)), delimiter=",", ndmin=2)
+            table = np.loadtxt(io.StringIO(_text(path), newline=None), delimiter=",", ndmin=2)
         if table.nbytes > MOST_BYTES:
             raise ValueError(_too_much(table.nbytes))
     except _UNREADABLE as error:

@@ -118,6 +118,5 @@ class Port:
 
 def _write_no_file(url: str) -> None:
     """Raise ValueError if pyserial would empty a file, and write what comes and goes into it."""
-    parts = urlsplit(url)
-    if parts.scheme == "spy" and "file" in parse_qs(parts.query, keep_blank_values=True):
+    if url.lower().startswith("spy:") and "file" in parse_qs(urlsplit(url).query, True):
         raise ValueError("spy:// writes no file here; without its 'file=' it writes to stderr")

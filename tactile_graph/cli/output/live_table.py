@@ -105,10 +105,12 @@ class LiveTable:
     def _fit(self, first: Result) -> list[Column]:
         """Take columns for which the terminal has no room from the outputs that have most.
 
-        Those go first that are empty in the first row.
+        Those go first that are empty in the first row, unless an output has no value there: what
+        it leaves empty then, as the place of what does not lie there yet, may well come.
         """
         columns = [c.column for b in self.blocks for c in b.all]
-        empty = {c.key for b in self.blocks for c in _empty(first, b.output)}
+        whole = not any(first.outcome(b.output.output).__class__ in NO_VALUE for b in self.blocks)
+        empty = {c.key for b in self.blocks for c in _empty(first, b.output) if whole}
 
         def rank(cells: list[_Cell], at: int) -> tuple[bool, bool, int]:
             column = cells[at].column
@@ -195,9 +197,7 @@ def _block(output: OutputColumns, errors: bool) -> _Block:
 
 
 def _empty(result: Result, output: OutputColumns) -> list[Column]:
-    """Return the columns of an output's value that it leaves empty; none where it has no value."""
-    if result.outcome(output.output).__class__ in NO_VALUE:
-        return []
+    """Return the columns of an output's value that it leaves empty."""
     values = values_of(result, output)
     return [c for c in output.values if values.get(c.key) is None]
 

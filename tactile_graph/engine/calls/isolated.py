@@ -11,6 +11,7 @@ next frame finds a new one, for which it waits unless state is gone, which a ski
 from __future__ import annotations
 
 import pickle
+import time
 from collections.abc import Mapping
 from queue import Empty
 from typing import Any, NamedTuple
@@ -24,6 +25,9 @@ from tactile_graph.steps.signature import Kind
 
 START_S = 60.0
 """How long a process may take to start: what a step imports may be on a slow disc."""
+QUICK_S, AGAIN = 0.1, 10.0
+"""A step that cannot be made is tried again at its next call if that was told as quickly, else
+after so many times as long: frames do not wait each for a device that is gone."""
 
 
 class OverrunError(TactileGraphError):
@@ -147,6 +151,8 @@ class Host:
         """Numbers of the steps that a new process is making, in the order it tells of them."""
         self._unmade: set[int] = set()
         """Of those that one could not make: they are tried again when they are called."""
+        self._in_vain: dict[Order, tuple[float, str]] = {}
+        """Of what could not be made: when it is tried again, and why it could not."""
         self._n_restarts = 0
         self.n_lost = 0
         """How many calls came to nothing that the step itself gave or raised."""
@@ -234,7 +240,11 @@ class Host:
 
     def _make(self, number: int) -> None:
         """Have a step made, and wait for it; raises UsageError where it cannot be."""
-        order = self._orders[number]
+        order, begun = self._orders[number], time.monotonic()
+        until, why = self._in_vain.pop(order, (begun, ""))
+        if begun < until:
+            self._in_vain[order] = until, why
+            raise self._cannot_run(order, why)
         try:
             kind, why = self._answer(pickle.dumps((number, order.pickled)), START_S)
         except Empty:
@@ -244,11 +254,16 @@ class Host:
         if kind == MADE:
             self._unmade.discard(number)
             return
+        now = time.monotonic()
+        self._in_vain[order] = now + AGAIN * max(now - begun - QUICK_S, 0.0), why
         self._unmade.add(number)
         if kind == ENDED:
             self._start_anew(why, number)
+        raise self._cannot_run(order, why)
+
+    def _cannot_run(self, order: Order, why: str) -> UsageError:
         what = f"the process of {self._name}" if self._name else "its own process"
-        raise UsageError(f"node {order.node!r}: {what} cannot run the step: {why}")
+        return UsageError(f"node {order.node!r}: {what} cannot run the step: {why}")
 
     def _take_note(self, seconds: float) -> None:
         """Take note of the steps that a new process has made; raises Skip if one is awaited."""
@@ -260,7 +275,9 @@ class Host:
                 self._asking = False
                 what = f"the process of {self._name}" if self._name else "its process"
                 raise Skip(f"{what} is being started anew: the last {self._ended_by}") from None
-            if kind != MADE:
+            if kind == MADE:
+                self._in_vain.pop(self._orders[self._awaited[0]], None)
+            else:
                 self._unmade.add(self._awaited[0])
             if kind == ENDED:
                 self._start_anew(self._process.end_in_words(), self._awaited[0])

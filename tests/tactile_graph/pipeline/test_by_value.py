@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections import OrderedDict
+from collections import OrderedDict, defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, field, make_dataclass
 from datetime import UTC, date, datetime, time, timedelta, timezone
@@ -11,6 +11,7 @@ from decimal import Decimal
 from enum import Enum
 from fractions import Fraction
 from functools import cached_property, partial
+from itertools import count
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -22,6 +23,7 @@ from pydantic import BaseModel, Field, PrivateAttr
 
 from helpers_graphs import registry
 from tactile_graph import Image, loads
+from tactile_graph.pipeline import by_value
 from tactile_graph.pipeline.graph import node_key
 from tactile_graph.pipeline.plain import plain
 
@@ -223,3 +225,22 @@ def test_nodes_whose_settings_differ_in_what_no_text_shows_have_keys_of_their_ow
     one, other = (loads(text.format(by), "p.yaml", registry({"noisy": noisy})) for by in (1.0, 7.0))
     assert one.nodes["n"].key != other.nodes["n"].key
     assert one.resolved() != other.resolved()
+
+
+def test_numbers_of_numpy_as_keys_are_told_as_the_ones_they_are_equal_to() -> None:
+    given = {np.int64(3): 1, np.float64(0.5): 2, np.str_("a"): 3}
+    assert repr(plain(given)) == "{'3': 1, '0.5': 2, 'a': 3}"
+
+
+@pytest.mark.parametrize("made", [lambda: Unsendable(1.0), lambda: scaled(1.0)])
+def test_what_cannot_be_looked_into_is_told_alike_in_the_next_run(
+    made: Callable[[], Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The key of a node seeds its random numbers: with the same seed they are drawn again."""
+    runs = []
+    for _ in range(2):
+        monkeypatch.setattr(by_value, "_untold", {})
+        monkeypatch.setattr(by_value, "_numbers", defaultdict(count))
+        runs.append([plain(Mute(made())) for _ in range(2)])
+    assert runs[0] == runs[1]
+    assert len({*runs[0]}) == 2

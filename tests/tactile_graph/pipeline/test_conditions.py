@@ -94,6 +94,17 @@ def test_a_guard_that_the_program_itself_holds_reckons_so_too() -> None:
 def test_parts_of_numbers_are_divided_by_0_as_before() -> None:
     with np.errstate(all="ignore"):
         assert compile_condition("b / 0.0 > 1", TYPES).function(np.float64(1.0))
+        for kind in (np.int64, np.uint64, np.uint8):
+            zero = kind(0)  # type: ignore[operator]
+            assert compile_condition("b / a > 1", TYPES).function(np.uint16(2), zero)
+            assert not compile_condition("a / b > 1", TYPES).function(zero, zero)
+
+
+def test_large_numbers_of_numpy_are_reckoned_with_as_they_are() -> None:
+    assert compile_condition("a - 1 > 0", TYPES).function(np.uint64(2**64 - 1))
+    single = np.float32(0.1)
+    for text in ("a > 0.1", "abs(a) > 0.1", "a * 1 > 0.1"):
+        assert not compile_condition(text, TYPES).function(single), text
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,5 @@
 import gzip
+import lzma
 import os
 
 import numpy as np
@@ -35,6 +36,20 @@ def test_gains_can_be_read_from_a_file(tmp_path, ending):
     else:
         path.write_text("1,4\n")
     assert Gain(elements=str(path))(image_of([[2.0, 8.0]])).values.tolist() == [[2.0, 2.0]]
+
+
+@pytest.mark.parametrize(
+    ("ending", "data"),
+    [
+        (".csv", b"1\r2\r"),
+        (".csv", b"1\r\r\n2\r\r\n"),
+        (".csv.lzma", lzma.compress(b"1\n2\n", lzma.FORMAT_ALONE)),
+    ],
+)
+def test_lines_may_end_as_on_any_machine_and_be_packed_as_numpy_knows(tmp_path, ending, data):
+    path = tmp_path / f"gains{ending}"
+    path.write_bytes(data)
+    assert Gain(elements=str(path))(image_of([[2.0], [8.0]])).values.tolist() == [[2.0], [4.0]]
 
 
 def test_a_file_that_is_no_table_is_refused(tmp_path):

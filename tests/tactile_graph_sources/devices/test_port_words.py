@@ -109,3 +109,9 @@ def test_a_port_that_would_be_written_to_a_file_is_refused(tmp_path: Path, optio
         message = opening(f"{scheme}:///dev/no-such-port?{option.format(victim)}")
         assert "cannot be opened: spy:// writes no file here" in message
         assert victim.read_text() == "kept"
+
+
+@pytest.mark.parametrize("pattern", ["[Nn]o-such-port", "VID:PID=FFFF:FFF[0-9]-none"])
+def test_a_pattern_of_ports_may_have_brackets(pattern: str) -> None:
+    got: Any = opening(f"hwgrep://{pattern}")
+    assert "no ports found matching" in got

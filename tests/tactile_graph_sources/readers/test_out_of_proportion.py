@@ -19,7 +19,7 @@ from tactile_graph.errors import DataError, TactileGraphError, UsageError
 from tactile_graph_pads.pad import load_pad
 from tactile_graph_sources.devices.preset_file import load_preset, read_preset
 from tactile_graph_sources.readers import head
-from tactile_graph_sources.readers.arrays import archive, hdf5
+from tactile_graph_sources.readers.arrays import archive, hdf5, zarr_arrays
 from tactile_graph_sources.readers.arrays import npz as npz_reader
 from tactile_graph_sources.readers.arrays.archive import opened
 from tactile_graph_sources.readers.logs import mcap_chunks
@@ -119,6 +119,32 @@ def test_many_texts_of_any_length_are_times(tmp_path: Path) -> None:
     found, _ = frames_of(tmp_path / "a.h5")
     assert [f.time_s for f in found[:3]] == [0.0, 0.01, 0.02]
     assert found[-1].time_s == pytest.approx(29.99)
+
+
+def test_texts_of_even_steps_that_pack_to_next_to_nothing_are_times(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is written beside them counts as well."""
+    h5py = pytest.importorskip("h5py", reason="the 'hdf5' extra is not installed")
+    zarr = pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
+    for reader in (hdf5, zarr_arrays):
+        monkeypatch.setattr(reader, "LARGE", 10_000)
+    n = 2000
+    step = np.timedelta64(10, "ms")
+    times = (np.datetime64("2024-01-01T12:00:00.000") + np.arange(n) * step).astype("S23")
+    values = np.random.default_rng(0).integers(0, 255, (n, 4, 4)).astype("u1")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["values"] = values
+        packed = {"compression": "gzip", "compression_opts": 9, "shuffle": True, "chunks": (n,)}
+        times_of = file.create_dataset("time", data=times, **packed)
+        assert 120 * n > 200 * times_of.id.get_storage_size()
+    root = zarr.open_group(tmp_path / "a.zarr", mode="w", zarr_format=2)
+    root.create_array("values", data=values)
+    root.create_array("time", data=times, chunks=(n,))
+    assert 120 * n > 200 * root["time"].nbytes_stored()
+    for name in ("a.h5", "a.zarr"):
+        found, _ = frames_of(tmp_path / name)
+        assert found[-1].time_s == pytest.approx(0.01 * (n - 1))
 
 
 def test_an_archive_with_a_long_list_of_members_is_not_listed(

@@ -148,12 +148,12 @@ def _texts(h5py: ModuleType, name: str, dataset: Any) -> list[str]:
     DataError
         If they are far larger than what is written.
     """
-    where = dataset.file.filename
+    where, written = dataset.file.filename, dataset.file.id.get_filesize()
     if not h5py.check_ref_dtype(dataset.dtype):
-        _check_size(where, {name: dataset})
+        _check_size(where, {name: dataset}, written)
         return _letters(name, dataset)
     items = {f"{name}{{{k}}}": d for k, d in enumerate(_referred(h5py, dataset), 1)}
-    _check_size(where, items)
+    _check_size(where, items, written)
     return [" ".join(_letters(*item)) for item in items.items()]
 
 
@@ -265,8 +265,11 @@ def _class_of(dataset: Any) -> str:
     return found.decode("latin-1") if isinstance(found, bytes) else str(found)
 
 
-def _check_size(where: str, datasets: Mapping[str, Any]) -> None:
-    """Refuse datasets that lie elsewhere, or are together far larger than what is written."""
+def _check_size(where: str, datasets: Mapping[str, Any], written: int | None = None) -> None:
+    """Refuse datasets that lie elsewhere, or are together far larger than what is written.
+
+    Of texts that is the whole file: those of even steps pack to next to nothing.
+    """
     datasets = {
         f"{name}{{{k + 1}}}" if isinstance(d, _Cells) else name: one
         for name, d in datasets.items()
@@ -277,7 +280,7 @@ def _check_size(where: str, datasets: Mapping[str, Any]) -> None:
             told = f"dataset {name!r} lies in other files; save its values in this one"
             raise DataError(where, told)
     bytes_ = sum(d.size * item_bytes(d.dtype) for d in datasets.values())
-    packed = sum(d.id.get_storage_size() for d in datasets.values())
+    packed = written or sum(d.id.get_storage_size() for d in datasets.values())
     if bytes_ > max(LARGE, MOST_TIMES * packed):
         which = f"dataset{'s' if len(datasets) > 1 else ''} {', '.join(map(repr, [*datasets][:3]))}"
         more = f" and {len(datasets) - 3} more" if len(datasets) > 3 else ""

@@ -129,10 +129,11 @@ class _Objects:
         self, objects: Iterable[tuple[_Where, TrueObject]], image: Image
     ) -> tuple[TrueObject, ...]:
         """Return the objects of a frame, each by its line or its frame and number, once each."""
-        found: dict[tuple[object, str], tuple[_Where, TrueObject]] = {}
+        found: dict[object, tuple[_Where, TrueObject]] = {}
         for where, lies in objects:
             self._see(where, lies, image)
-            first, _ = found.setdefault((lies.shape, lies.name), (where, lies))
+            said = lies.shape, lies.weight_g, lies.name  # what is stacked has weights of its own
+            first, _ = found.setdefault(said, (where, lies))
             if first != where:
                 self._again.setdefault(where, first)
         return tuple(lies for _, lies in found.values())
@@ -151,8 +152,8 @@ class _Objects:
             n, (where, first) = len(self._again), min(self._again.items())
             are = "s are others" if n != 1 else " is another one"
             tell(
-                f"{path}: {n} object{are} again, of the same kind, place, size and name, and left "
-                f"out, first that of {_named(where)}, which is that of {_named(first)}"
+                f"{path}: {n} object{are} again, of the same kind, place, size, weight and name, "
+                f"and left out, first that of {_named(where)}, which is that of {_named(first)}"
             )
         if not self._off:
             return

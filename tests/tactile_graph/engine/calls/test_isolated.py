@@ -11,6 +11,7 @@ import time
 import types
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -20,6 +21,7 @@ import helpers_isolated_kernels as kernel_steps
 from helpers_graphs import STEPS, frame, registry
 from tactile_graph import Frame, Image, Pipeline, hookimpl, loads
 from tactile_graph.compiled import mode
+from tactile_graph.engine.calls import isolated
 from tactile_graph.engine.calls.process import how_ended
 from tactile_graph.engine.outcomes.outcome import Failed, Skipped
 from tactile_graph.errors import PipelineError, UsageError
@@ -34,6 +36,7 @@ OWN = {
     "counting": steps.Counting,
     "timed": steps.Timed,
     "needs_file": steps.NeedsFile,
+    "needs_device": steps.NeedsDevice,
     "elsewhere": steps.elsewhere,
     "readiness": kernel_steps.readiness,
     "unsendable": steps.unsendable,
@@ -374,6 +377,31 @@ outputs: [needy, other]
     needed.touch()
     assert runner(replace(frame(9, 5), label="b"))["needy"] == 9
     assert runner(frame(10, 6))["needy"] == 10
+
+
+def test_frames_do_not_wait_each_for_a_step_that_takes_long_to_fail_when_it_is_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(isolated, "AGAIN", 1e6)
+    needed, tries = tmp_path / "needed", tmp_path / "needed.tries"
+    needed.touch()
+    node = f"step: needs_device, in: frame, isolated: true, with: {{path: {needed}}}"
+    runner = pipeline(node).runner()
+    assert runner(frame(5))["risky"] == 5
+    needed.unlink()
+    tries.unlink()
+    runner(frame(steps.CRASHES, 1))
+    end = time.monotonic() + 60
+    while isinstance(runner(frame(6, 2)).outcome("risky"), Skipped):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+    told = "its own process cannot run the step: FileNotFoundError: "
+    for i in range(5):
+        assert told in runner(frame(7, 3 + i)).outcome("risky").reason
+    assert tries.read_text() == "++"  # by the new process, and at the first call
+    monkeypatch.setattr(isolated, "time", SimpleNamespace(monotonic=lambda: 1e12))  # long after
+    needed.touch()
+    assert runner(frame(8, 9))["risky"] == 8
 
 
 def test_a_plugin_may_say_how_long_a_call_takes_at_most() -> None:

@@ -98,6 +98,16 @@ def test_an_object_given_twice_counts_once_and_is_told(
     assert err.endswith("that of frame 0, object 2, which is that of frame 0, object 0")
 
 
+def test_objects_of_other_weights_that_are_stacked_all_count(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "truth.csv"
+    path.write_text(f"{CIRCLE},weight_g\nall,circle,1,2,3,100\nall,circle,1,2,3,200\n")
+    (frame,) = with_truth(frames(1), path)
+    assert [o.weight_g for o in frame.truth or ()] == [100.0, 200.0]
+    assert not capsys.readouterr().err
+
+
 def readerr(capsys: pytest.CaptureFixture[str]) -> str:
     return capsys.readouterr().err.rstrip()
 
