@@ -118,11 +118,11 @@ class Locate:
         """Return the choice by some readings; errors as of a call."""
         return self._chosen(readings, self._every)
 
-    def _chosen(self, readings: Readings, every: dict[str, AnyPad]) -> Located:
+    def _chosen(self, readings: Readings, every: Mapping[str, AnyPad]) -> Located:
         every = {name: any_pad.suited(readings) for name, any_pad in every.items()}
         if "disc" in every and readings.touched < FEWEST:
             return _as_disc(every, readings)
-        readings, tops = tops_of_each(every, readings)
+        every, readings, tops = tops_of_each(every, readings)
         chance = probabilities(tops, readings)
         best = max(chance, key=chance.__getitem__)
         shares = dict.fromkeys(Located._fields[3:], 0.0) | chance

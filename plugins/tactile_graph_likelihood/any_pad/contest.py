@@ -36,8 +36,8 @@ Tops = dict[str, Likeliest]
 
 def tops_of_each(
     every: Mapping[str, AnyPad], readings: Readings
-) -> tuple[Readings, dict[str, Tops]]:
-    """Return the most likely outlines of each kind, by pressure, and readings as they have them.
+) -> tuple[Mapping[str, AnyPad], Readings, dict[str, Tops]]:
+    """Return the most likely outlines of each kind, by pressure, and what they are found with.
 
     Parameters
     ----------
@@ -47,6 +47,8 @@ def tops_of_each(
 
     Returns
     -------
+    mapping of str to AnyPad
+        Fits that know of strays and told foam, as far as readings are likelier for these.
     Readings
         As of `AnyPad.cleared`.
     dict of str to dict
@@ -64,10 +66,11 @@ def tops_of_each(
     best = max(found.values(), key=lambda its: its.evidence, default=None)
     tops: dict[str, Tops] = {}
     reason = Degenerate("none of the shapes explains what is touched")
-    for name, any_pad in every.items():
+    for name, any_pad in [*every.items()]:
         try:
             if best is None:
                 its, readings, even = any_pad.first(readings)
+                every = {**every, name: its}
                 tops[name] = its.completed(readings, even)
             elif _may_win(any_pad, found[name], best, readings.touched):
                 tops[name] = any_pad.completed(readings, found[name], alone=False)
@@ -77,7 +80,7 @@ def tops_of_each(
             reason = why
     if not tops:
         raise reason
-    return readings, tops
+    return every, readings, tops
 
 
 def _first_look(

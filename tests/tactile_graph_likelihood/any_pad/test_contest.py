@@ -34,7 +34,7 @@ def test_a_kind_that_is_hopelessly_behind_is_left_as_it_was_found():
     step = Locate()
     frame = frames_of("noise 0.2 mV", n=3)[2]
     readings = step.readings(frame.image)
-    readings, tops = tops_of_each(step._every, readings)
+    _, readings, tops = tops_of_each(step._every, readings)
     assert [*tops["rectangle"]] == [EVEN]
     assert tops["disc"][EVEN].evidence > tops["rectangle"][EVEN].evidence + 12.0
     chance = probabilities(tops, readings)
@@ -55,7 +55,7 @@ def alone(any_pad, readings):
 def test_what_is_left_out_would_not_have_won(kind, shape):
     step, off = Locate(), []
     for frame in frames_of(kind, shape):
-        readings, tops = tops_of_each(step._every, step.readings(frame.image))
+        _, readings, tops = tops_of_each(step._every, step.readings(frame.image))
         every = {name: alone(its, readings) for name, its in step._every.items()}
         full, found = probabilities(every, readings), probabilities(tops, readings)
         off.append(abs(full[shape] - found[shape]))
