@@ -320,9 +320,11 @@ class Model:
     def _prior(self, readings: Readings) -> Values:
         """Return the same, which is everybody's."""
         place = readings.grid.tobytes(), readings.states.shape
+        pitch = float(readings.grid[2])
         pitches = SMALLEST_PITCHES if is_row(readings) else self.smallest_pitches
-        smallest_cm = self.smallest_cm or pitches * float(readings.grid[2])
-        return _prior_of(place, smallest_cm, self.largest_cm, self.whole)
+        smallest_cm = self.smallest_cm or pitches * pitch
+        usual_cm = self.smallest_cm or SMALLEST_PITCHES * pitch
+        return _prior_of(place, smallest_cm, self.largest_cm, self.whole, usual_cm)
 
     def _noise_at(self, pitch_cm: float) -> NoiseTaken:
         kept = self._kept.get(pitch_cm)
@@ -396,14 +398,22 @@ def _around(top: Values, mean: Values, covariance: Values) -> tuple[Values, Valu
 
 @lru_cache(256)
 def _prior_of(
-    place: tuple[bytes, tuple[int, ...]], smallest_cm: float, largest_cm: float, whole: float
+    place: tuple[bytes, tuple[int, ...]],
+    smallest_cm: float,
+    largest_cm: float,
+    whole: float,
+    usual_cm: float,
 ) -> Values:
-    """Return a prior vector on elements of a grid, as bytes, of so many rows and columns."""
+    """Return a prior vector on elements of a grid, as bytes, of so many rows and columns.
+
+    Outlines of two sizes that are smaller than usual leave the others as likely as they were.
+    """
     grid = np.frombuffer(place[0])
     (left, top), (width, height) = grid[:2].tolist(), size_of(grid, place[1])
     if not math.isfinite(largest_cm):
-        largest_cm = max(math.hypot(width, height), 2.0 * smallest_cm)
-    return np.array([left, top, width, height, smallest_cm, largest_cm, whole, math.nan, 0.0])
+        largest_cm = max(math.hypot(width, height), 2.0 * usual_cm)
+    extra = 2.0 * math.log(math.log(largest_cm / smallest_cm) / math.log(largest_cm / usual_cm))
+    return np.array([left, top, width, height, smallest_cm, largest_cm, whole, math.nan, extra])
 
 
 @cache
