@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from click.testing import CliRunner
 
 from tactile_graph import Frame
 from tactile_graph.cli import cli
+from tactile_graph.cli.interrupt import Ended
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.injected import Report
@@ -170,6 +172,48 @@ def test_frames_that_ctrl_c_alone_ends_are_kept(
     got = CliRunner().invoke(cli, ["convert", "--source", "simulate", str(target)])
     assert got.exit_code == 130
     assert f"{target}: 3 frames\n" in got.stdout
+    assert len(list(recording(path=target, report=Report()))) == 3
+
+
+@pytest.mark.parametrize("ending", ["zarr", "npz", "csv"])
+@pytest.mark.parametrize("asked", [("--frames", "9"), ()])
+def test_frames_that_end_by_themselves_are_kept_all_or_none(
+    tmp_path: Path,
+    made: list[Frame],
+    monkeypatch: pytest.MonkeyPatch,
+    ending: str,
+    asked: tuple[str, ...],
+) -> None:
+    def ended(_step: str, _given: object, report: Report, _seed: int) -> Iterator[Frame]:
+        report.expect(9)
+        yield from made[:3]
+        raise Ended(signal.SIGTERM)
+
+    monkeypatch.setattr("tactile_graph_sources.commands.any_source.frames_of_source", ended)
+    target = tmp_path / f"b.{ending}"
+    if ending != "zarr":
+        target.write_text("another")
+    before = sorted(tmp_path.iterdir())
+    words = ["convert", "--source", "simulate", *asked, "--overwrite", str(target)]
+    got = CliRunner().invoke(cli, words)
+    assert (got.exit_code, got.output.strip()) == (128 + signal.SIGTERM, "ended by SIGTERM")
+    assert sorted(tmp_path.iterdir()) == before
+    assert ending == "zarr" or target.read_text() == "another"
+
+
+@pytest.mark.parametrize("asked", [("--frames", "9"), ()])
+def test_frames_of_a_pad_that_a_signal_ends_are_kept_and_it_is_told(
+    tmp_path: Path, made: list[Frame], monkeypatch: pytest.MonkeyPatch, asked: tuple[str, ...]
+) -> None:
+    def ended(_step: str, _given: object, report: Report, _seed: int) -> Iterator[Frame]:
+        report.expect(9)
+        yield from made[:3]
+        raise Ended(signal.SIGTERM)
+
+    monkeypatch.setattr("tactile_graph_sources.commands.any_source.frames_of_source", ended)
+    target = tmp_path / "b.npz"
+    got = CliRunner().invoke(cli, ["convert", "--source", "serial", *asked, str(target)])
+    assert (got.exit_code, got.stderr.strip()) == (128 + signal.SIGTERM, "ended by SIGTERM")
     assert len(list(recording(path=target, report=Report()))) == 3
 
 
