@@ -56,8 +56,8 @@ def of_files(reading: Reading, names: list[str]) -> Iterator[Frame]:
     single = True
     for name in names:
         path, n = folder / name, reading.index
-        reading.report.digest(str(path), sha256_of(path))
         head = Head.of(path, reading.told)
+        reading.report.digest(str(path), sha256_of(path))
         part = reading.of_part(head)
         for frame in format_of(head).read(part):
             before, shape = first.setdefault(frame.label, (name, frame.image.shape))
@@ -70,6 +70,7 @@ def of_files(reading: Reading, names: list[str]) -> Iterator[Frame]:
                     "folder of their own",
                 )
             yield frame
+        part.check_unchanged()
         reading.index, reading.place = part.index, part.place
         single &= part.index <= n + 1
         if part.index == n and not part.first_damage:
