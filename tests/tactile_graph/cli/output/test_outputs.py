@@ -101,6 +101,23 @@ def test_a_note_that_has_no_room_either_hides_nothing(
     assert got.stderr.endswith(f"error: {note}\n")
 
 
+@pytest.mark.parametrize("older", ["", "older\n"])
+def test_a_note_that_has_no_room_from_the_start_leaves_one_frame_and_that_is_told(
+    tmp_path: Path, older: str
+) -> None:
+    if older:
+        (tmp_path / "out.jsonl").write_text(older)
+    with full_at(1000):
+        got = call("run", "discs", "-o", "out.jsonl")
+    name, stays = (
+        ("out.unfinished.jsonl", "; the older out.jsonl stays") if older else ("out.jsonl", "")
+    )
+    assert got.exit_code == 2
+    assert f"wrote {name}; only the first frame is in it{stays}\n" in got.stderr
+    assert got.stderr.endswith(f"error: {name}.meta.json: cannot be written: File too large\n")
+    assert (tmp_path / name).read_text().count("\n") == 1
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "library"), [("out.parquet", "pyarrow"), ("out.zarr", "zarr")])
 def test_what_stands_only_when_it_is_whole_leaves_no_note_of_what_is_not_there(
