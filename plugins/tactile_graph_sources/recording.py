@@ -284,8 +284,9 @@ def _frames(reading: Reading, of: RecordingFormat) -> Iterator[Frame]:
         reading.check_unchanged()  # or that is why
         error.what += as_typed(error.what, getattr(error, "sensors", ()))
         raise
-    except OSError as error:
-        raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
+    except OSError as error:  # of a folder, a file in it
+        where = str(error.filename or path)
+        raise DataError(where, f"cannot be read: {error.strerror or error}") from error
     reading.check_unchanged()
     if n_frames:
         return
