@@ -150,6 +150,13 @@ def test_no_store_is_written_over(tmp_path: Path, made: list[Frame]) -> None:
     assert len(list(recording(path=target, report=Report()))) == len(made)
 
 
+def test_a_store_that_cannot_be_made_is_called_as_it_was(tmp_path: Path, made: list[Frame]) -> None:
+    target = tmp_path / f"{'o' * 249}.zarr"  # and no lock of such a name can lie beside it
+    got = CliRunner().invoke(cli, ["convert", str(tmp_path / "a.npz"), str(target)])
+    assert got.exit_code == 2
+    assert f"error: {target}: cannot be written: File name too long\n" in got.stderr
+
+
 def test_a_store_that_came_to_be_meanwhile_stays(tmp_path: Path, made: list[Frame]) -> None:
     write = installed().load(OFFERS, ".zarr").write
     write(tmp_path / "b.zarr", iter(made), "another")

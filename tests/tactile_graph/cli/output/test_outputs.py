@@ -313,6 +313,17 @@ def test_a_folder_that_may_not_be_written_is_refused_before_the_work(
     assert f"error: {command[-2]} {command[-1]}: no permission to write in" in got.stderr
 
 
+def test_a_name_that_leaves_no_room_for_the_note_is_refused_before_the_work(tmp_path: Path) -> None:
+    fits = f"{'o' * 228}.unfinished.jsonl"
+    for name in (fits, f"o{fits}"):
+        got = call("run", "discs", "-o", name)
+    assert got.exit_code == 2
+    assert got.stderr.startswith(f"error: -o o{fits}: the name is too long: of o{fits}.meta.json,")
+    assert {p.name for p in tmp_path.iterdir() if "oo" in p.name} == {fits, f"{fits}.meta.json"}
+    got = call("run", "discs", "-o", fits)  # whose older one would stay, and the new one beside it
+    assert f"of {'o' * 228}.unfinished.unfinished.jsonl.meta.json, beside it" in got.stderr
+
+
 def test_a_table_that_could_not_be_written_is_told_without_a_type() -> None:
     assert words(OSError(errno.ENOSPC, "No space left on device")) == (
         "the output cannot be written: No space left on device"
