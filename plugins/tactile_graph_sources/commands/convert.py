@@ -26,7 +26,12 @@ OFFERS = "recording_writers"
 
 
 @click.command()
-@click.argument("recordings", metavar="[RECORDING]...", nargs=-1, type=click.Path(path_type=Path))
+@click.argument(
+    "recordings",
+    metavar="[RECORDING]...",
+    nargs=-1,
+    type=click.Path(readable=False, path_type=Path),
+)
 @click.argument("target", type=click.Path(path_type=Path))
 @click.option(
     "--source",

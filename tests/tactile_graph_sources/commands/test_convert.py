@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,6 +19,7 @@ from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires import Circle, TrueObject
 from tactile_graph_sources.commands.convert import OFFERS, convert
+from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.recording import recording
 from tactile_graph_sources.writers.write_npz import write_npz
 from tactile_graph_sources.writers.write_store import StoreWriter
@@ -257,6 +259,21 @@ def test_a_target_within_the_folder_that_is_the_recording_is_refused(tmp_path: P
     result = CliRunner().invoke(cli, ["convert", *args])
     assert result.exit_code == 2
     assert "f2.csv: would be a part of what the command reads" in result.stderr
+
+
+@pytest.mark.parametrize("words", [("inspect", "{a}"), ("convert", "{a}", "{b}")])
+def test_a_file_that_may_not_be_read_is_told_as_run_tells_it(
+    tmp_path: Path, made: list[Frame], monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...]
+) -> None:
+    def shut(path: Path, _told: object) -> None:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    path = tmp_path / "a.npz"
+    may = os.access
+    monkeypatch.setattr(os, "access", lambda p, how: Path(p) != path and may(p, how))
+    monkeypatch.setattr(Head, "of", shut)  # root may read any
+    got = CliRunner().invoke(cli, [word.format(a=path, b=tmp_path / "b.npz") for word in words])
+    assert (got.exit_code, got.stderr) == (2, f"error: {path}: cannot be read: Permission denied\n")
 
 
 def test_a_source_that_is_no_recording_is_an_error(tmp_path: Path) -> None:
