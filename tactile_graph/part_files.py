@@ -22,6 +22,9 @@ for all, or a disc of its own is mounted on it.
 _NO_RENAMING = (errno.ENOSYS, errno.EOPNOTSUPP, errno.EXDEV)
 """A file system knows no renaming, or not there."""
 
+LONGEST = 200
+"""Bytes of a name from which on a hidden one holds but its beginning."""
+
 
 def part_of(target: Path) -> Path:
     """Return the hidden name beside a file under which this process writes it.
@@ -29,7 +32,7 @@ def part_of(target: Path) -> Path:
     What processes of this machine that are there no more have left of the same file, since they
     were killed, is removed; an older folder that was being replaced just then gets its name back.
     """
-    before = f".{target.name}.{_machine()}-"
+    before = f".{_short(target.name)}.{_machine()}-"
     for end in (".part.old", ".part"):
         for left in target.parent.glob(f"{glob.escape(before)}*{end}"):
             process = left.name.removeprefix(before).removesuffix(end)
@@ -136,7 +139,14 @@ def _put_over_folder(part: Path, target: Path) -> None:
 
 def _old_of(target: Path) -> Path:
     """Return the name of an older folder while it is replaced; `part_of` finds it after a kill."""
-    return target.with_name(f".{target.name}.{_machine()}-{os.getpid()}.part.old")
+    return target.with_name(f".{_short(target.name)}.{_machine()}-{os.getpid()}.part.old")
+
+
+def _short(name: str) -> str:
+    """Return a name that leaves room for what a hidden one has more: file systems end at 255."""
+    if len(os.fsencode(name)) <= LONGEST:
+        return name
+    return f"{name[:40]}~{zlib.crc32(os.fsencode(name)):08x}"
 
 
 def _exchanged(one: Path, other: Path) -> bool:

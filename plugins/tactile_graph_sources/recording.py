@@ -111,7 +111,8 @@ def recording(
     Raises
     ------
     DataError
-        If a file is missing, of no known format, or without a single whole frame.
+        If a file is missing, of no known format, without a single whole frame, or written anew
+        while it is read.
     """
     told = Told.of(
         ColumnsTold(frame_column, time_column, value_column, cells, time_unit, time_format),
@@ -233,8 +234,8 @@ def _recognised(path: Path, told: Told, report: Report) -> tuple[Head, Recording
         if found is None:
             raise _no_recording(path)
         return Head(path, b"", told), found
-    report.digest(str(path), sha256_of(path))
     head = Head.of(path, told)
+    report.digest(str(path), sha256_of(path))
     return head, format_of(head)
 
 
@@ -280,10 +281,13 @@ def _frames(reading: Reading, of: RecordingFormat) -> Iterator[Frame]:
             n_frames += 1
             yield frame
     except DataError as error:
+        reading.check_unchanged()  # or that is why
         error.what += as_typed(error.what, getattr(error, "sensors", ()))
         raise
-    except OSError as error:
-        raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
+    except OSError as error:  # of a folder, a file in it
+        where = str(error.filename or path)
+        raise DataError(where, f"cannot be read: {error.strerror or error}") from error
+    reading.check_unchanged()
     if n_frames:
         return
     if told.sensor and reading.sensors:

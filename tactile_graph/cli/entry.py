@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import gc
+import io
 import os
 import sys
+from typing import Any
 
 NEW_OBJECTS = 100_000
 """Until garbage is searched for among them: imports make as many that stay."""
@@ -52,9 +54,33 @@ def _open_streams() -> None:
             os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # gets the lowest: this one
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115 -- until the end
+    elif isinstance(_raw_of(sys.stderr), io.FileIO):
+        sys.stderr = io.TextIOWrapper(
+            io.BufferedWriter(_Patient(sys.stderr.fileno(), "w", closefd=False)),
+            sys.stderr.encoding, sys.stderr.errors, line_buffering=True,
+        )  # fmt: skip
     if sys.stdout is None:
         sys.stderr.write("error: standard output is closed (>&-); send it to /dev/null instead\n")
         sys.exit(2)
+
+
+def _raw_of(stream: Any) -> object:
+    """Return what a stream writes to in the end, without a buffer (``-u``) or with one."""
+    buffer = getattr(stream, "buffer", None)
+    return getattr(buffer, "raw", buffer)
+
+
+class _Patient(io.FileIO):
+    """A standard error that lets go what it cannot write: its disc is full, its reader gone.
+
+    What a command says is not what it does: its exit code stays what it is.
+    """
+
+    def write(self, data: Any) -> int:
+        try:
+            return super().write(data)
+        except OSError:
+            return memoryview(data).nbytes
 
 
 def _stand_in_a_folder() -> None:

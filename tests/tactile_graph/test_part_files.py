@@ -36,6 +36,15 @@ def _killed(target: Path, kind: str) -> Path:
     return part
 
 
+def test_a_file_may_have_the_longest_name_that_there_is(tmp_path: Path) -> None:
+    for end in ("a.svg", "b.svg"):
+        with whole_file(tmp_path / f"{'µ' * 125}{end}") as file:
+            file.write(end.encode())
+    other = part_of(tmp_path / f"{'µ' * 125}b.svg")
+    assert part_of(tmp_path / f"{'µ' * 125}a.svg") != other
+    assert {path.read_text() for path in tmp_path.iterdir()} == {"a.svg", "b.svg"}
+
+
 @killed
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["file", "folder"])

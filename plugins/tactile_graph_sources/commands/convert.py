@@ -26,7 +26,12 @@ OFFERS = "recording_writers"
 
 
 @click.command()
-@click.argument("recordings", metavar="[RECORDING]...", nargs=-1, type=click.Path(path_type=Path))
+@click.argument(
+    "recordings",
+    metavar="[RECORDING]...",
+    nargs=-1,
+    type=click.Path(readable=False, path_type=Path),
+)
 @click.argument("target", type=click.Path(path_type=Path))
 @click.option(
     "--source",
@@ -80,6 +85,7 @@ def convert(
     frames are those of any other source, a simulated one or a plugin's.
     """
     from tactile_graph.errors import UsageError
+    from tactile_graph.plugins.devices import reads_device
     from tactile_graph.steps.injected import Report
 
     ending = _check(recordings, target, source, overwrite)
@@ -92,14 +98,16 @@ def convert(
             from tactile_graph_sources.readers.words.truth_file import with_truth
 
             frames = opened.enter_context(closing(with_truth(frames, truth, report)))
-        if source is not None and not installed().has("readers", source):
-            frames = kept.until_ctrl_c(frames)  # which is what ends those of a pad at a port
+        if source is not None and reads_device(source):
+            frames = kept.until_ended(frames)  # what a pad gave is not to be had again
+        elif source is not None and n_frames is None and not installed().has("readers", source):
+            frames = kept.until_ended(frames, report)
         about = source or ", ".join(r.name for r in recordings)
         with opened:
             n = writer.write(target, kept.watch(islice(frames, n_frames)), about)
     except ValueError as error:
         raise UsageError(str(error)) from error
-    if n or not kept.interrupted:
+    if n or kept.ended is None:
         say(f"{target}: {n} frame{'s' if n != 1 else ''}")
     for what, count in report.counts.items():
         if what.startswith("recordings"):
@@ -109,8 +117,8 @@ def convert(
     lost = [name for name in kept.names if name in writer.loses]
     if lost:
         say(f"left out, as a {ending} has no place for it: {', '.join(lost)}", err=True)
-    if kept.interrupted:
-        raise KeyboardInterrupt
+    if kept.ended is not None:
+        raise kept.ended
 
 
 def _check(recordings: Sequence[Path], target: Path, source: str | None, overwrite: bool) -> str:
@@ -166,14 +174,16 @@ class _Carried:
 
     def __init__(self) -> None:
         self.names: dict[str, None] = {}
-        self.interrupted = False
+        self.ended: KeyboardInterrupt | None = None
 
-    def until_ctrl_c(self, frames: Iterator[Frame]) -> Iterator[Frame]:
-        """Yield frames until they or Ctrl-C end."""
+    def until_ended(self, frames: Iterator[Frame], report: Report | None = None) -> Iterator[Frame]:
+        """Yield frames until they end, or a signal ends them of which the report knows no end."""
         try:
             yield from frames
-        except KeyboardInterrupt:
-            self.interrupted = True
+        except KeyboardInterrupt as error:
+            if report is not None and report.n_expected is not None:
+                raise
+            self.ended = error
 
     def watch(self, frames: Iterator[Frame]) -> Iterator[Frame]:
         from tactile_graph_sources.readers.words.truth import own_shapes

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tactile_graph_sources.readers.unchanged import Seen
 from tactile_graph_sources.readers.words.told import Told
 
 if TYPE_CHECKING:
@@ -34,12 +35,14 @@ class Head:
     path: Path
     raw: bytes
     told: Told
+    seen: Seen | None = None
 
     @classmethod
     def of(cls, path: Path, told: Told) -> Head:
         """Read the start of a file."""
         with path.open("rb") as file:
-            return cls(path, file.read(SAMPLE), told)
+            seen = Seen.of(file)
+            return cls(path, file.read(SAMPLE), told, seen)
 
     @property
     def whole(self) -> bool:

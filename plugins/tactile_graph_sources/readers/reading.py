@@ -88,6 +88,11 @@ class Reading:
                 text = line.rstrip("\n")
                 yield number, text if labels is None else labels.plain(text)
 
+    def check_unchanged(self) -> None:
+        """Refuse what was read of a file that was written meanwhile; raises DataError."""
+        if self.head.seen is not None:
+            self.head.seen.check(self.path, self.report)
+
     def count_bytes(self, needle: bytes) -> int:
         """Return how often ``needle`` stands in the file, to say how many frames to expect."""
         n, tail = 0, b""

@@ -18,8 +18,9 @@ class SoleWriter:
     Two files stand beside the store, hidden: the lock, which stays with it, and who holds it.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, called: Path | None = None) -> None:
         self.path = path
+        self._called = called or path
         self._lock = Lock(path.with_name(f".{path.name}.lock"))
         self._holder = path.with_name(f".{path.name}.writer")
 
@@ -30,9 +31,9 @@ class SoleWriter:
         ------
         UsageError
         """
-        with said(self.path):
+        with said(self._called):
             if not self._lock.take():
-                raise UsageError(f"{self.path}: is being written to{self._who()}")
+                raise UsageError(f"{self._called}: is being written to{self._who()}")
             since = time.strftime("%Y-%m-%d %H:%M:%S")
             name = f"process {os.getpid()} on {platform.node()}, since {since}"
             try:

@@ -115,7 +115,7 @@ class StoreWriter:
         self._is_new = False
         if self.path.exists() and not append:
             raise UsageError(f"{self.path} is there already; append to it, or choose another name")
-        self._sole = SoleWriter(self.path)
+        self._sole = SoleWriter(self.path, self._called)
         self._sole.take()
         try:
             if self.path.exists():

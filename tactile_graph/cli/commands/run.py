@@ -203,6 +203,8 @@ class _Run:
     error: Exception | None = None
     written: bool = False
     """Whether the output was closed with all that was to go into it."""
+    cut_short: bool = False
+    """Whether an error ended the frames."""
     compiling: int | None = None
     """The process that still compiles when the frames are done."""
 
@@ -448,7 +450,8 @@ class _Run:
             return
         from tactile_graph.exporter import close_early
 
-        early = self.error is not None or (self.interrupted is not None and not self._is_endless())
+        self.cut_short = self.error is not None
+        early = self.cut_short or (self.interrupted is not None and not self._is_endless())
         try:
             close_early(self.lines) if early else self.lines.close()
             self.written = not getattr(self.lines, "broken", False)
@@ -501,10 +504,13 @@ class _Run:
             for text in filter(None, (several, without_columns(self.columns))):
                 say.print(text, style="yellow", soft_wrap=True)
         written = self._lies_at() if self.written else None
+        from tactile_graph.cli.output.older import only_first
+
+        only = only_first(self.tally.n) if self.cut_short else ""
         stays = getattr(self.lines, "stays", "") if self.written else ""
-        for name, more in ((written, stays), (self.plot if drawn else None, "")):
+        for name, *more in ((written, only, stays), (self.plot if drawn else None,)):
             if name not in (None, "-"):
-                told = f"wrote {name}; {more}" if more else f"wrote {name}"
+                told = "; ".join(filter(None, (f"wrote {name}", *more)))
                 say.print(told, style="dim", soft_wrap=True)
         for note in self.drawing.notes() if self.drawing is not None and drawn else ():
             say.print(note, style="dim", soft_wrap=True)

@@ -341,6 +341,8 @@ class ManyRun:
             text = "" if name == "-" else f"wrote {name}"
         elif self.unfinished is not None and self.low > self.asked.span.start:
             text = f"{self.n_kept} frames are kept: --resume goes on with {name}"
+        elif self.tally.n and not self.n_kept and name != "-":
+            text = f"nothing of {name} is kept"
         else:
             text = ""
         if text:

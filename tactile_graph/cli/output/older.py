@@ -32,6 +32,11 @@ def stays(output: str) -> str:
     return f"the older {output} stays"
 
 
+def only_first(n: int) -> str:
+    """Return what there is in an output of a run that an error ended."""
+    return f"only the first {n} frames are in it" if n > 1 else "only the first frame is in it"
+
+
 def _ended_early(output: str) -> bool:
     try:
         return json.loads(sidecar(output).read_bytes())["complete"] is False

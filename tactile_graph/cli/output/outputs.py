@@ -13,6 +13,7 @@ import click
 
 from tactile_graph.errors import PluginError, TactileGraphError, UsageError, did_you_mean
 from tactile_graph.exporter import Export, Exporter, Writer, close_early, write_block
+from tactile_graph.files import is_plain
 from tactile_graph.plugins.foreign_code import stdout_again
 from tactile_graph.plugins.registry import CORE, installed
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 OFFERS = "exporters"
 USUAL = ".jsonl"
 FOLDER = ".dataset"
+LONGEST_NAME = 255
 SCREEN = "a table on the screen"
 
 
@@ -75,6 +77,14 @@ class Output:
         """Refuse what could not be written in the end, before the work."""
         with self._named("check"):
             self.exporter.check(self.name)
+        if self.name != "-" and is_plain(self.name):
+            from tactile_graph.cli.output.older import unfinished_by
+            from tactile_graph.provenance import sidecar
+
+            note = sidecar(unfinished_by(self.name) or self.name).name
+            if len(os.fsencode(note)) > LONGEST_NAME:
+                told = f"the name is too long: of {note}, beside it, file systems take no more than"
+                raise UsageError(f"-o {self.name}: {told} {LONGEST_NAME} bytes")
 
     def writer(self, pipeline: Pipeline, asked: tuple[str, ...]) -> tuple[Writer, Table | None]:
         """Return who writes it, and the table it is, if it is one."""

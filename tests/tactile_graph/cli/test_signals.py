@@ -115,3 +115,16 @@ def test_other_streams_may_be_closed(tmp_path: Path, stream: str, more: tuple[st
     got = closed(stream, "run", "circle-1", "--frames", "2", "-o", str(out), *more)
     assert got.returncode == 0, got.stderr
     assert [json.loads(line)["frame"] for line in out.read_text().splitlines()] == [0, 1]
+
+
+@pytest.mark.slow
+@posix
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux has it")
+@pytest.mark.parametrize(("words", "code"), [(("frobnicate",), 2), (("convert", "{a}", "{b}"), 0)])
+def test_a_standard_error_without_room_changes_no_exit_code(
+    tmp_path: Path, words: tuple[str, ...], code: int
+) -> None:
+    (tmp_path / "a.csv").write_text("".join(f"{k},2,3,5,{k}\n" * 9 for k in range(9)))
+    told = (word.format(a=tmp_path / "a.csv", b=tmp_path / "b.npz") for word in words)
+    got = closed("2>/dev/full", *told, *(() if code else ("--rows", "1", "--columns", "5")))
+    assert (got.returncode, (tmp_path / "b.npz").exists()) == (code, not code)

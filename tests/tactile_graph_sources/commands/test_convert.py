@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,11 +13,13 @@ from click.testing import CliRunner
 
 from tactile_graph import Frame
 from tactile_graph.cli import cli
+from tactile_graph.cli.interrupt import Ended
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires import Circle, TrueObject
 from tactile_graph_sources.commands.convert import OFFERS, convert
+from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.recording import recording
 from tactile_graph_sources.writers.write_npz import write_npz
 from tactile_graph_sources.writers.write_store import StoreWriter
@@ -148,6 +152,13 @@ def test_no_store_is_written_over(tmp_path: Path, made: list[Frame]) -> None:
     assert len(list(recording(path=target, report=Report()))) == len(made)
 
 
+def test_a_store_that_cannot_be_made_is_called_as_it_was(tmp_path: Path, made: list[Frame]) -> None:
+    target = tmp_path / f"{'o' * 249}.zarr"  # and no lock of such a name can lie beside it
+    got = CliRunner().invoke(cli, ["convert", str(tmp_path / "a.npz"), str(target)])
+    assert got.exit_code == 2
+    assert f"error: {target}: cannot be written: File name too long\n" in got.stderr
+
+
 def test_a_store_that_came_to_be_meanwhile_stays(tmp_path: Path, made: list[Frame]) -> None:
     write = installed().load(OFFERS, ".zarr").write
     write(tmp_path / "b.zarr", iter(made), "another")
@@ -170,6 +181,48 @@ def test_frames_that_ctrl_c_alone_ends_are_kept(
     got = CliRunner().invoke(cli, ["convert", "--source", "simulate", str(target)])
     assert got.exit_code == 130
     assert f"{target}: 3 frames\n" in got.stdout
+    assert len(list(recording(path=target, report=Report()))) == 3
+
+
+@pytest.mark.parametrize("ending", ["zarr", "npz", "csv"])
+@pytest.mark.parametrize("asked", [("--frames", "9"), ()])
+def test_frames_that_end_by_themselves_are_kept_all_or_none(
+    tmp_path: Path,
+    made: list[Frame],
+    monkeypatch: pytest.MonkeyPatch,
+    ending: str,
+    asked: tuple[str, ...],
+) -> None:
+    def ended(_step: str, _given: object, report: Report, _seed: int) -> Iterator[Frame]:
+        report.expect(9)
+        yield from made[:3]
+        raise Ended(signal.SIGTERM)
+
+    monkeypatch.setattr("tactile_graph_sources.commands.any_source.frames_of_source", ended)
+    target = tmp_path / f"b.{ending}"
+    if ending != "zarr":
+        target.write_text("another")
+    before = sorted(tmp_path.iterdir())
+    words = ["convert", "--source", "simulate", *asked, "--overwrite", str(target)]
+    got = CliRunner().invoke(cli, words)
+    assert (got.exit_code, got.output.strip()) == (128 + signal.SIGTERM, "ended by SIGTERM")
+    assert sorted(tmp_path.iterdir()) == before
+    assert ending == "zarr" or target.read_text() == "another"
+
+
+@pytest.mark.parametrize("asked", [("--frames", "9"), ()])
+def test_frames_of_a_pad_that_a_signal_ends_are_kept_and_it_is_told(
+    tmp_path: Path, made: list[Frame], monkeypatch: pytest.MonkeyPatch, asked: tuple[str, ...]
+) -> None:
+    def ended(_step: str, _given: object, report: Report, _seed: int) -> Iterator[Frame]:
+        report.expect(9)
+        yield from made[:3]
+        raise Ended(signal.SIGTERM)
+
+    monkeypatch.setattr("tactile_graph_sources.commands.any_source.frames_of_source", ended)
+    target = tmp_path / "b.npz"
+    got = CliRunner().invoke(cli, ["convert", "--source", "serial", *asked, str(target)])
+    assert (got.exit_code, got.stderr.strip()) == (128 + signal.SIGTERM, "ended by SIGTERM")
     assert len(list(recording(path=target, report=Report()))) == 3
 
 
@@ -206,6 +259,21 @@ def test_a_target_within_the_folder_that_is_the_recording_is_refused(tmp_path: P
     result = CliRunner().invoke(cli, ["convert", *args])
     assert result.exit_code == 2
     assert "f2.csv: would be a part of what the command reads" in result.stderr
+
+
+@pytest.mark.parametrize("words", [("inspect", "{a}"), ("convert", "{a}", "{b}")])
+def test_a_file_that_may_not_be_read_is_told_as_run_tells_it(
+    tmp_path: Path, made: list[Frame], monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...]
+) -> None:
+    def shut(path: Path, _told: object) -> None:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    path = tmp_path / "a.npz"
+    may = os.access
+    monkeypatch.setattr(os, "access", lambda p, how: Path(p) != path and may(p, how))
+    monkeypatch.setattr(Head, "of", shut)  # root may read any
+    got = CliRunner().invoke(cli, [word.format(a=path, b=tmp_path / "b.npz") for word in words])
+    assert (got.exit_code, got.stderr) == (2, f"error: {path}: cannot be read: Permission denied\n")
 
 
 def test_a_source_that_is_no_recording_is_an_error(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.errors import DataError
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame, Image
 from tactile_graph.wires.frame_stack import FrameStack
@@ -51,13 +52,16 @@ def without_garbage(
     """
     pending: deque[Frame] = deque()
     films: dict[str, _Film] = {} if begun is None else {"": begun}
-    for frame in frames:
+    failed: list[DataError] = []
+    for frame in _until_failed(frames, failed):
         pending.append(frame)
         films.setdefault(frame.label, _Film()).add(frame)
         while len(films[pending[0].label].ahead) > NEIGHBOURS:
             yield from _settled(films[pending[0].label], pending.popleft(), report, where)
     while pending:
         yield from _settled(films[pending[0].label], pending.popleft(), report, where)
+    if failed:
+        raise failed[0]
 
 
 def stacks_without_garbage(
@@ -72,6 +76,15 @@ def stacks_without_garbage(
     report, where
         As of `without_garbage`.
     """
+    failed: list[DataError] = []
+    yield from _in_stacks(_until_failed(frames, failed), report, where)
+    if failed:
+        raise failed[0]
+
+
+def _in_stacks(
+    frames: Iterator[Frame | FrameStack], report: Report, where: str
+) -> Iterator[Frame | FrameStack]:
     film = _Film()
     now: FrameStack | None = None
     while True:
@@ -88,6 +101,14 @@ def stacks_without_garbage(
             yield from without_garbage(_flat(chain([after], frames)), report, where, film)
             return
         now = after
+
+
+def _until_failed(frames: Iterator[Any], failed: list[DataError]) -> Iterator[Any]:
+    """Yield frames until they end or fail, so that those that are held go on before the error."""
+    try:
+        yield from frames
+    except DataError as error:
+        failed.append(error)
 
 
 def _flat(frames: Iterable[Frame | FrameStack]) -> Iterator[Frame]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -28,6 +30,7 @@ def recognises(head: Head) -> bool:
     names = files_in(head.path)
     if not names:
         return False
+    _refuse_shut(head.path, names[:1])
     try:
         format_of(Head.of(head.path / names[0], Told()))
     except DataError:
@@ -52,12 +55,13 @@ def read(reading: Reading) -> Iterator[Frame]:
 def of_files(reading: Reading, names: list[str]) -> Iterator[Frame]:
     """Yield the frames of files of a folder one after the other; raises what `read` raises."""
     folder = reading.path
+    _refuse_shut(folder, names)  # before the work
     first: dict[str, tuple[str, tuple[int, ...]]] = {}
     single = True
     for name in names:
         path, n = folder / name, reading.index
-        reading.report.digest(str(path), sha256_of(path))
         head = Head.of(path, reading.told)
+        reading.report.digest(str(path), sha256_of(path))
         part = reading.of_part(head)
         for frame in format_of(head).read(part):
             before, shape = first.setdefault(frame.label, (name, frame.image.shape))
@@ -70,11 +74,18 @@ def of_files(reading: Reading, names: list[str]) -> Iterator[Frame]:
                     "folder of their own",
                 )
             yield frame
+        part.check_unchanged()
         reading.index, reading.place = part.index, part.place
         single &= part.index <= n + 1
         if part.index == n and not part.first_damage:
             # Where files hold several frames each, nobody knows how many this one should.
             reading.damaged(name, "it holds no whole frame", n_frames=int(single))
+
+
+def _refuse_shut(folder: Path, names: list[str]) -> None:
+    shut = next((folder / name for name in names if not os.access(folder / name, os.R_OK)), None)
+    if shut is not None:
+        raise DataError(str(shut), f"cannot be read: {os.strerror(errno.EACCES)}")
 
 
 FOLDER = RecordingFormat("folder of numbered files", recognises, read, plain=True, of_folders=True)

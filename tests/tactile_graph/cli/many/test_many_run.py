@@ -19,6 +19,8 @@ from click.testing import CliRunner
 from helpers_many import command, ran, ran_here, surroundings, write_plugin
 from tactile_graph import load
 from tactile_graph.cli import cli
+from tactile_graph.cli.many.unfinished import Unfinished
+from tactile_graph.errors import UsageError
 
 pytest.importorskip("zarr", reason="the 'zarr' extra is not installed")
 DISCS = ("--source", "simulate", "--with", "scene=discs")
@@ -417,6 +419,20 @@ def test_a_run_that_never_began_leaves_nothing(folder: Path) -> None:
     got = ran_here(folder, "run", "circle-1", "a.zarr", "-o", "x.csv", "--on", "tcp://127.0.0.1:9")
     assert got.returncode == 2
     assert "no scheduler answers there" in got.stderr
+    assert [p.name for p in folder.iterdir() if "x.csv" in p.name] == []
+
+
+@pytest.mark.slow
+def test_frames_that_were_done_and_not_kept_are_told(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise UsageError("x.csv: cannot be written: No space left on device")
+
+    monkeypatch.setattr(Unfinished, "add", full)
+    got = ran_here(folder, "run", "circle-1", "a.zarr", "-o", "x.csv", "--workers", "1")
+    assert got.returncode == 2
+    assert "nothing of x.csv is kept\nerror: x.csv: cannot be written" in got.stderr
     assert [p.name for p in folder.iterdir() if "x.csv" in p.name] == []
 
 

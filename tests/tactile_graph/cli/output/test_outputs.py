@@ -101,6 +101,23 @@ def test_a_note_that_has_no_room_either_hides_nothing(
     assert got.stderr.endswith(f"error: {note}\n")
 
 
+@pytest.mark.parametrize("older", ["", "older\n"])
+def test_a_note_that_has_no_room_from_the_start_leaves_one_frame_and_that_is_told(
+    tmp_path: Path, older: str
+) -> None:
+    if older:
+        (tmp_path / "out.jsonl").write_text(older)
+    with full_at(1000):
+        got = call("run", "discs", "-o", "out.jsonl")
+    name, stays = (
+        ("out.unfinished.jsonl", "; the older out.jsonl stays") if older else ("out.jsonl", "")
+    )
+    assert got.exit_code == 2
+    assert f"wrote {name}; only the first frame is in it{stays}\n" in got.stderr
+    assert got.stderr.endswith(f"error: {name}.meta.json: cannot be written: File too large\n")
+    assert (tmp_path / name).read_text().count("\n") == 1
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "library"), [("out.parquet", "pyarrow"), ("out.zarr", "zarr")])
 def test_what_stands_only_when_it_is_whole_leaves_no_note_of_what_is_not_there(
@@ -294,6 +311,17 @@ def test_a_folder_that_may_not_be_written_is_refused_before_the_work(
     assert got.exit_code == 2
     assert got.stdout == ""
     assert f"error: {command[-2]} {command[-1]}: no permission to write in" in got.stderr
+
+
+def test_a_name_that_leaves_no_room_for_the_note_is_refused_before_the_work(tmp_path: Path) -> None:
+    fits = f"{'o' * 228}.unfinished.jsonl"
+    for name in (fits, f"o{fits}"):
+        got = call("run", "discs", "-o", name)
+    assert got.exit_code == 2
+    assert got.stderr.startswith(f"error: -o o{fits}: the name is too long: of o{fits}.meta.json,")
+    assert {p.name for p in tmp_path.iterdir() if "oo" in p.name} == {fits, f"{fits}.meta.json"}
+    got = call("run", "discs", "-o", fits)  # whose older one would stay, and the new one beside it
+    assert f"of {'o' * 228}.unfinished.unfinished.jsonl.meta.json, beside it" in got.stderr
 
 
 def test_a_table_that_could_not_be_written_is_told_without_a_type() -> None:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from helpers_recordings import blobs, flat_text, frames_of, stacked_text, write
 from tactile_graph.errors import DataError
-from tactile_graph_sources.recording import recording
+from tactile_graph.steps.injected import Report
+from tactile_graph_sources.recording import recording, recording_stacked
 
 VALUES = blobs(12, 5, 7)
 
@@ -54,6 +59,29 @@ def test_a_file_of_a_folder_without_a_frame_is_told_and_the_next_follows_a_gap(
     np.testing.assert_array_equal([f.image.values for f in frames], np.delete(VALUES, 3, axis=0))
     assert [k for k, f in enumerate(frames) if f.gap] == [3]
     assert [where for where, _ in report.troubles] == [f"{folder / 'f3.csv'}:1"]
+
+
+@pytest.mark.parametrize("name", ["f0.csv", "f5.csv"])
+def test_a_file_of_a_folder_that_may_not_be_read_is_named_before_the_work(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    may = os.access
+    monkeypatch.setattr(os, "access", lambda p, how: Path(p).name != name and may(p, how))
+    with pytest.raises(DataError) as told:  # root may read any
+        next(recording(path=folder, report=Report()))
+    assert str(told.value) == f"{folder / name}: cannot be read: Permission denied"
+
+
+@pytest.mark.parametrize("in_stacks", [False, True])
+def test_frames_before_one_that_cannot_be_read_are_given(folder: Path, in_stacks: bool) -> None:
+    write(folder, stacked_text(blobs(1, 6, 7)), "f9.csv")
+    columns = dict.fromkeys(("frame_column", "time_column", "value_column", "cells"), "")
+    unset = {**columns, "time_unit": "", "time_format": ""}
+    read = recording_stacked if in_stacks else recording
+    frames: Iterator[Any] = read(path=folder, report=Report(), **unset)  # type: ignore[operator]
+    assert len([*islice(frames, 9)]) == 9
+    with pytest.raises(DataError, match=r"f9\.csv: has frames of 6 x 7"):
+        next(frames)
 
 
 def test_files_of_another_size_in_a_folder_are_refused(folder: Path) -> None:
