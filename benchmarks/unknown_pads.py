@@ -2,7 +2,8 @@
 
 Run with ``python benchmarks/unknown_pads.py``; ``--shape rectangle`` takes rectangles instead of
 discs, ``--scenes N`` so many of a kind, ``--kinds`` some of the kinds only, ``--markdown FILE``
-writes the tables, ``--told-foam-cm CM`` tells ``locate`` of foam, ``--workers N`` shares the kinds among processes (times: measure with one). All
+writes the tables, ``--told-foam-cm CM`` tells ``locate`` of foam, ``--workers N`` shares the kinds
+among processes (times: measure with one). All
 pipelines are told the thesis' pad; what lies on the bench is one of the kinds of
 `second_simulator`, which shares no code with the project's own pads.
 
