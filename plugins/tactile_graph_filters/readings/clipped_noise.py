@@ -38,6 +38,10 @@ LARGEST_STEP = 1.0
 ALIKE, APART = 1.05, 2.5
 """Times, and standard deviations beyond that, what neighbours share by chance."""
 
+FEWEST_TIED = 12
+"""Readings that are all the least above rest, from which on they are one step above it: a logarithm
+or a root makes the steps further up smaller."""
+
 FEW_STEPS = 8.0
 """Of a converter, up to which what is alike along rows or columns may be hum; a frame of two
 values is a mat of switches, which has none."""
@@ -78,6 +82,8 @@ def _noise_plain(values: Values, known: Cells, sample: Values, rest: float, step
     at_rest, above = start - int(sample.searchsorted(rest)), sample[start:] - rest
     if at_rest < FEWEST_AT_REST:
         return 0.0
+    tied = len(above) >= FEWEST_TIED and above[FEWEST_TIED - 1] == above[0]
+    first = float(above[0]) if tied else step
     squares = np.add.accumulate(above * above)  # one by one, as loops add
     for k in range(len(above)):
         n_above, n_free = k + 1, at_rest + k + 1
@@ -95,7 +101,7 @@ def _noise_plain(values: Values, known: Cells, sample: Values, rest: float, step
             sigma = float(above[half]) / HALF_WITHIN
             k = int(above.searchsorted(FARTHEST * sigma, "right")) - 1
             n_above, n_free = k + 1, at_rest + k + 1
-        if is_as_many(n_above, n_free, sigma, step):
+        if is_as_many(n_above, n_free, sigma, first):
             hum = FEW_STEPS * step if above[0] < above[-1] else 0.0
             return sigma if _is_anywhere_plain(values, known, rest, float(above[k]), hum) else 0.0
     return 0.0
@@ -112,6 +118,8 @@ def clipped_noise(values, known, sample, rest, step):  # type: ignore[no-untyped
         start += 1
     if start - below < FEWEST_AT_REST:
         return 0.0
+    tied = n - start >= FEWEST_TIED and sample[start + FEWEST_TIED - 1] == sample[start]
+    first = sample[start] - rest if tied else step
     within = start
     for k in range(start, n):
         above = sample[k] - rest
@@ -133,7 +141,7 @@ def clipped_noise(values, known, sample, rest, step):  # type: ignore[no-untyped
             while sample[k] - rest > FARTHEST * sigma:
                 k -= 1
             above, n_above, n_free = sample[k] - rest, k + 1 - start, k + 1 - below
-        if is_as_many(n_above, n_free, sigma, step):
+        if is_as_many(n_above, n_free, sigma, first):
             hum = FEW_STEPS * step if sample[start] < sample[n - 1] else 0.0
             return sigma if is_anywhere(values, known, rest, above, hum) else 0.0
     return 0.0
@@ -143,7 +151,7 @@ def clipped_noise(values, known, sample, rest, step):  # type: ignore[no-untyped
 def is_as_many(n_above: int, n_free: int, sigma: float, step: float) -> bool:
     """Return whether so many readings above rest, of all without a load, are enough for noise.
 
-    Of rounded noise those above rest are what is more than half a ``step`` beyond it.
+    Of rounded noise those above rest are what is more than half a ``step``, the first, beyond it.
     """
     expected = 0.5 * n_free * math.erfc(0.5 * step / (math.sqrt(2.0) * sigma))
     return n_above >= ENOUGH * expected

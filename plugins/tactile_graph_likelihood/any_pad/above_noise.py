@@ -13,6 +13,7 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Image, Mask, quick_mask
 from tactile_graph_filters.readings.clipped_noise import clipped_noise
 from tactile_graph_filters.readings.dead_below import without_dead
+from tactile_graph_filters.readings.hot_lines import row_offsets
 from tactile_graph_filters.readings.ordered import in_order
 from tactile_graph_likelihood.any_pad.clump import NEAR
 from tactile_graph_likelihood.any_pad.frame_noise import frame_noise, noise_of_sorted
@@ -181,7 +182,8 @@ def _rising_plain(
         How far the largest rises, 0 where none does.
     shows : ndarray of bool, shape (rows, columns)
     above : ndarray, shape (rows, columns)
-        How far they rise, 0 where no more than noise; if it is not wanted, of shape (0, 0).
+        How far they rise, in rows and columns that rest higher from there; 0 where no more than
+        noise; if it is not wanted, of shape (0, 0).
     """
     kept = values if known is EVERY else np.where(known, values, 0.0)
     if not np.abs(kept).max(initial=0.0) <= LARGEST:
@@ -190,7 +192,9 @@ def _rising_plain(
     if sigma == 0.0:
         sigma = clipped_noise.reference(kept, known, sample, zero, step)
     least = max(deviations * sigma, 0.5 * step)
-    above = kept - zero
+    down = row_offsets.reference(values, known, zero, sigma, step)
+    across = row_offsets.reference(values.T, known.T, zero, sigma, step)
+    above = kept - zero - down[:, None] - across
     shows = above > least
     if known is not EVERY:
         shows &= known
@@ -216,9 +220,11 @@ def rising(values, known, sample, deviations, wanted):  # type: ignore[no-untype
     if sigma == 0.0:
         sigma = clipped_noise(values, known, sample, zero, step)
     least, most = max(deviations * sigma, 0.5 * step), 0.0
+    down = row_offsets(values, known, zero, sigma, step)
+    across = row_offsets(values.T, known.T, zero, sigma, step)
     for i in range(rows):
         for j in range(columns):
-            rise = values[i, j] - zero
+            rise = values[i, j] - zero - down[i] - across[j]
             its = (every or known[i, j]) and rise > least
             shows[i, j] = its
             if its:
@@ -264,7 +270,8 @@ class AboveNoise:
     -----
     The zero and the noise are those of the frame's own closest quarter of readings, which is taken
     to be untouched; where these are all the same and the least, the noise is what lies just above
-    (`clipped_noise`). Cells that are dead far below the others are left out (`dead_below`).
+    (`clipped_noise`). Cells that are dead far below the others are left out (`dead_below`), and
+    rows and columns that rest above the others are brought back (`hot_lines`).
     ``level`` is the largest that any element must reach, in the image's unit.
     """
 

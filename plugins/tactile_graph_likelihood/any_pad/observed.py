@@ -64,8 +64,8 @@ def observed(
         Volts are freed of the pad's circuit, unless most of them cannot be its, and conductances
         turned into loads by its law: of a floating circuit, whose inverse noise upsets, those
         within the noise that the pad states. Any other quantity is taken to rise with load from the
-        frame's own zero. Invalid cells say nothing, nor do those that are dead far below the
-        others (`dead_below`).
+        frame's own zero, in rows and columns that rest higher from theirs (`hot_lines`). Invalid
+        cells say nothing, nor do those that are dead far below the others (`dead_below`).
     pad : Pad
         What it has learned of its elements from recordings is applied, see `taught`.
     gap_cm : float, optional

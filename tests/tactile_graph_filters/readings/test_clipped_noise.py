@@ -170,6 +170,19 @@ def test_cells_that_do_not_count_say_nothing() -> None:
     assert noise_of(other, known) == noise_of(values, known) > 0.0
 
 
+@pytest.mark.parametrize("noise", [0.5, 1.0])
+@pytest.mark.parametrize("bent", [np.log1p, np.sqrt])
+def test_noise_of_bent_readings_is_told_though_steps_further_up_are_smaller(
+    noise: float, bent: np.ufunc
+) -> None:
+    rng = np.random.default_rng(14)
+    for _ in range(20):
+        args = given(bent(counts(rng, noise, 3.5)))
+        found = clipped_noise.reference(*args)
+        assert plainly(clipped_noise)(*args) == found
+        assert 0.4 * bent(noise) < found < 1.6 * bent(noise)
+
+
 @pytest.mark.parametrize("shape", [(0, 0), (1, 3), (1, 200), (16, 16), (40, 30)])
 def test_noise_is_told_alike_in_loops(shape: tuple[int, int]) -> None:
     rng = np.random.default_rng(7)

@@ -41,6 +41,9 @@ def test_plain_code_loops_and_machine_code_answer_to_the_bit(shape, share, wrong
     sample = in_order(values.ravel() if share is None else values[known])
     check_alike(values, known, sample)
     if wrong is None:
+        hot = values.copy()
+        hot[shape[0] // 3 : shape[0] // 3 + 1] += 0.02
+        check_alike(held(hot), known, in_order(hot.ravel() if share is None else hot[known]))
         clipped = held(np.maximum(values, 0.0))
         check_alike(clipped, known, in_order(clipped.ravel() if share is None else clipped[known]))
 
@@ -120,3 +123,26 @@ def test_a_quarter_of_the_pad_dead_below_the_others_is_not_its_zero():
     found = AboveNoise()(image_of(values))
     assert (found.mask.values == (values > 100.0)).all()
     assert (observed(image_of(values), load_pad("thesis")).states[:8, :8] == UNKNOWN).all()
+
+
+@pytest.mark.parametrize("offset", [0.01, 0.02, 0.05])
+def test_a_hot_row_or_column_is_no_load_and_hides_none(offset):
+    rng = np.random.default_rng(9)
+    row, column = np.mgrid[:16, :16]
+    on = np.hypot(row - 7, column - 9) < 3.0
+    for load in (0.0, 0.3 * rng.lognormal(0.0, 0.3, (16, 16)) * on):
+        values = 5e-4 * rng.standard_normal((16, 16)) + load
+        hot = values.copy()
+        hot[6] += offset
+        for given in (hot, hot.T.copy()):
+            found = AboveNoise()(image_of(given))
+            if np.any(load):
+                assert np.array_equal(
+                    found.mask.values if given is hot else found.mask.values.T, on
+                )
+            else:
+                assert found.together <= 3
+                assert found.rise <= 1.5
+        if np.any(load):
+            above = risen(image_of(hot), PAD).above
+            np.testing.assert_allclose(above, np.where(on, values, 0.0), atol=1e-3)
