@@ -34,6 +34,7 @@ from tactile_graph_likelihood.any_pad.left_open import (
     looseness,
     unseen_share,
 )
+from tactile_graph_likelihood.any_pad.lopsided import lopsided
 from tactile_graph_likelihood.any_pad.posterior import (
     AnyPadPosterior,
     evenly_spread,
@@ -454,6 +455,8 @@ class AnyPad:
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
         hidden = self._hidden(its.alike, readings, len(tops)) + readings.length_std_cm**2
         whole = self._on_any_pad(its, readings, evidence, pressed, hidden)
+        if best == EVEN and (missed := self._missed(readings, tops[EVEN])) > 0.0:
+            whole = changed(whole, lopsided=missed)
         if is_row(readings):
             whole = within(whole, *self.told.range_cm(readings))
         large = readings.states.size > LARGE_PAD
@@ -461,6 +464,17 @@ class AnyPad:
             return whole
         whole = resized(whole, UNSEEN * unseen_share(tops[EVEN].fit.fall))
         return whole if self._reaches_beyond(readings, tops[best]) else evenly_spread(whole)
+
+    def _missed(self, readings: Readings, even: Likeliest) -> float:
+        """Return how much what an even face's outline misses lies to a side, 0 where foam blurs it.
+
+        Nor is it looked at on a pad of more than 1024 elements.
+        """
+        foam = self.told.noise.foam_cm > 0.0 or readings.through_foam is not None
+        if foam or readings.states.size > LARGE_PAD:
+            return 0.0
+        point = self.told.point_of(even)
+        return lopsided.call(self.told.kind, point, readings.grid, readings.states)
 
     @staticmethod
     def _has_no_foam(readings: Readings) -> bool:

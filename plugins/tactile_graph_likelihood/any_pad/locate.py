@@ -63,7 +63,8 @@ class LocateDisc(LocateOne):
     What counts as touched follows from the noise in the frame itself; law, gains, voids, strays and
     pressure are estimated with the outline, what the pad says being the middle of the guess. Any
     quantity that rises with load will do. ``fits`` is False where the readings leave the centre
-    3.5 times as uncertain as those of a pad as told would, or are less likely than the model's own.
+    3.5 times as uncertain as those of a pad as told would, or are less likely than the model's own,
+    or where elements that the outline misses lie to a side, as of a T.
     """
 
     _kind = DISC
