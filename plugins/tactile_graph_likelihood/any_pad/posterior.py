@@ -36,10 +36,13 @@ class AnyPadPosterior(Posterior):
         Deviation of the centre that readings as even as told would leave.
     evenly : float
         Independent points that one of its own is worth.
+    filtered : bool
+        Whether the image seems smoothed, median-filtered or enlarged: deviations are wider for it.
     """
 
     usual_std_cm: float = math.inf
     evenly: float = 1.0
+    filtered: bool = False
 
     @property
     def independent_points(self) -> float:
@@ -91,6 +94,7 @@ def on_any_pad(
         covariance.flat[: lengths * (len(covariance) + 1) : len(covariance) + 1] += hidden_cm2
         values["covariance"] = covariance
     values["evenly"] = DISC_EVENLY if found.kind == DISC else 1.0
+    values["filtered"] = False
     its = object.__new__(AnyPadPosterior)
     vars(its).update(values)  # a frozen dataclass sets its fields one by one, by a call each
     return its
