@@ -11,6 +11,7 @@ import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.clump import without_alone
+from tactile_graph_likelihood.any_pad.filtered import as_filtered
 from tactile_graph_likelihood.any_pad.from_frame import (
     AS_LOADS,
     LAW,
@@ -526,7 +527,10 @@ class AnyPad:
         ``pressed`` is a factor on its variance, ``hidden`` a variance in cm^2 of its lengths.
         """
         unevenness = self.told.noise.sigma * float(readings.grid[2]) ** 1.5
-        return stretched(on_any_pad(its, evidence, pressed, unevenness, hidden), readings)
+        whole = on_any_pad(its, evidence, pressed, unevenness, hidden)
+        if readings.filtered:
+            whole = as_filtered(whole, float(readings.grid[2]))
+        return stretched(whole, readings)
 
     def _normal(self, part: str, readings: Readings, top: Likeliest) -> Posterior:
         """Return the normal distribution around a fit, widened by what neighbours share."""

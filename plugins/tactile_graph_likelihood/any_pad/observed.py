@@ -13,6 +13,7 @@ from tactile_graph.steps.rules import Grid, require_square
 from tactile_graph.wires import Image
 from tactile_graph_filters.readings.dead_below import without_dead
 from tactile_graph_likelihood.any_pad.above_noise import EVERY, SHOWS, risen
+from tactile_graph_likelihood.any_pad.filtered import is_filtered
 from tactile_graph_likelihood.any_pad.learned_pad import LAWFUL
 from tactile_graph_likelihood.any_pad.shown import (
     LEAST,
@@ -99,7 +100,7 @@ def observed(
     grid = grid_of(image, gap_cm)
     if pad.learned is None:
         image = without_dead(image)
-    above, least, shows, _, its = risen(image, pad)
+    above, least, shows, zero, its = risen(image, pad)
     if not above.size:
         raise Degenerate("the image has no element: no outline fits")
     loads, least_loads, known, shows = _loads(image, above, least, shows, pad)
@@ -124,7 +125,14 @@ def observed(
     (edge, ceiling), logs, states = told_of_elements.direct(
         logs_seen, ordered, np.log(floor), shows, known, told
     )
-    found = Readings(grid, logs, states, seen.size, down / across, edge, turn_on)
+    filtered = False
+    if its is None and isinstance(
+        least, float
+    ):  # a pad that was learned knows its images as they come
+        values = np.ascontiguousarray(image.values, dtype=np.float64)
+        values.setflags(write=False)
+        filtered = is_filtered.direct(values, states, zero, least)
+    found = Readings(grid, logs, states, seen.size, down / across, edge, turn_on, filtered=filtered)
     if states.size > LARGE_PAD:
         return uniform(found)
     if ceiling < math.inf:

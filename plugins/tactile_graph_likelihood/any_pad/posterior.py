@@ -43,11 +43,14 @@ class AnyPadPosterior(Posterior):
         Independent points that one of its own is worth.
     lopsided : float
         How much what the outline misses lies to a side, in standard deviations.
+    filtered : bool
+        Whether the image seems smoothed, median-filtered or enlarged: deviations are wider for it.
     """
 
     usual_std_cm: float = math.inf
     evenly: float = 1.0
     lopsided: float = 0.0
+    filtered: bool = False
 
     @property
     def independent_points(self) -> float:
@@ -100,6 +103,7 @@ def on_any_pad(
         values["covariance"] = covariance
     values["evenly"] = DISC_EVENLY if found.kind == DISC else 1.0
     values["lopsided"] = 0.0
+    values["filtered"] = False
     its = object.__new__(AnyPadPosterior)
     vars(its).update(values)  # a frozen dataclass sets its fields one by one, by a call each
     return its

@@ -10,6 +10,7 @@ import numpy as np
 from annotated_types import Ge, Le, MinLen
 
 from tactile_graph.steps import Spread
+from tactile_graph_likelihood.any_pad.filtered import as_filtered
 from tactile_graph_likelihood.any_pad.from_frame import (
     FEWEST,
     MOST_STRAYS,
@@ -138,6 +139,9 @@ class LocateObjects:
         if is_row(readings):
             smallest_cm, largest_cm = problem.prior[SMALLEST : LARGEST + 1].tolist()
             placed = [within(its, smallest_cm, largest_cm) for its in placed]
+        vague = float(np.mean([its.centre_std_cm for its in placed])) >= VAGUE * pitch
+        if readings.filtered:
+            placed = [as_filtered(its, pitch) for its in placed]
         shapes = [stretched(unsized(its, unsure_cm), readings) for its in placed]
         return Footprints(
             tuple(likely(shape) for shape in shapes),
@@ -148,7 +152,7 @@ class LocateObjects:
             fit.surprise > STRANGE
             and found.count_probability > LIKELY
             and not overlooked(problem, found)
-            and float(np.mean([shape.centre_std_cm for shape in shapes])) < VAGUE * pitch
+            and not vague
             and not enclose(found),
         )
 

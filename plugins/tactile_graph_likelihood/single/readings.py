@@ -77,7 +77,7 @@ class Readings(NamedTuple):
     where some are held to the load at which readings end, and ``noise`` the deviation of a load
     there; ``gap`` what is believed of elements'
     gap, where that was not said; ``length_std_cm`` how uncertain it leaves the lengths of an
-    outline.
+    outline; ``filtered`` whether readings are not each their own, see `is_filtered`.
     """
 
     grid: Values
@@ -92,6 +92,7 @@ class Readings(NamedTuple):
     noise: float = 0.0
     gap: Gap | None = None
     length_std_cm: float = 0.0
+    filtered: bool = False
 
     @property
     def size_cm(self) -> tuple[float, float]:
