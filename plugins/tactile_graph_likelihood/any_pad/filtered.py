@@ -37,16 +37,15 @@ of readings that are each their own."""
 
 
 @compiled_later
-def untouched(states: States, row: int, column: int) -> bool:
-    """Return whether an element is, and all beside it are no touched ones."""
-    if states[row, column] != UNDER:
-        return False
+def untouched(states: States) -> Cells:
+    """Return which elements are, and all beside them are no touched ones."""
     rows, columns = states.shape
-    for i in range(max(row - 1, 0), min(row + 2, rows)):
-        for j in range(max(column - 1, 0), min(column + 2, columns)):
+    free = states == UNDER
+    for i in range(rows):
+        for j in range(columns):
             if states[i, j] == ON or states[i, j] == OVER:
-                return False
-    return True
+                free[max(i - 1, 0) : i + 2, max(j - 1, 0) : j + 2] = False
+    return free
 
 
 @compiled_later
@@ -86,20 +85,21 @@ def has_shared_noise(values: Values, states: States, zero: float, least: float) 
     or one apart: zeros that drift along the rows, along the columns, or both, cancel in them.
     """
     rows, columns = states.shape
-    off, free = np.zeros((rows, columns)), np.zeros((rows, columns), np.bool_)
+    off, free = np.zeros((rows, columns)), untouched(states)
     for i in range(rows):
         for j in range(columns):
-            if untouched(states, i, j):
-                free[i, j] = True
+            if free[i, j]:
                 off[i, j] = min(max(values[i, j] - zero, -least), least)
     apart, places = differing(off, free, 2, 2)
     if places < FEWEST:
         return False
+    beside = differing(off, free, 1, 1)[0]
+    if beside > 0.0 and math.log(apart / beside) * math.sqrt(places) <= SURE:
+        return False
     for down, right in ((1, 2), (2, 1)):
         if differing(off, free, down, right)[0] >= ALONG * apart:
             return False
-    beside = differing(off, free, 1, 1)[0]
-    return beside <= 0.0 or math.log(apart / beside) * math.sqrt(places) > SURE
+    return True
 
 
 @compiled_later

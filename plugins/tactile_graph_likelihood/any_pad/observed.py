@@ -126,9 +126,8 @@ def observed(
         logs_seen, ordered, np.log(floor), shows, known, told
     )
     filtered = False
-    if its is None and isinstance(
-        least, float
-    ):  # a pad that was learned knows its images as they come
+    # A pad that was learned knows its images as they come.
+    if its is None and isinstance(least, float):
         values = np.ascontiguousarray(image.values, dtype=np.float64)
         values.setflags(write=False)
         filtered = is_filtered.direct(values, states, zero, least)
