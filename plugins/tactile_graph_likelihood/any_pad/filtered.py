@@ -40,7 +40,7 @@ of readings that are each their own."""
 def untouched(states: States) -> Cells:
     """Return which elements are, and all beside them are no touched ones."""
     rows, columns = states.shape
-    free = states == UNDER
+    free: Cells = states == UNDER
     for i in range(rows):
         for j in range(columns):
             if states[i, j] == ON or states[i, j] == OVER:
