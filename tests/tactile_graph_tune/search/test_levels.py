@@ -136,4 +136,4 @@ def test_limits_are_those_of_the_file_whatever_settings_are_chosen() -> None:
     other = its.variants[1]
     found = its.resamples().of_all(Choice(1, other.given.order, other.given.chosen))
     (count,) = [k for place, k in found if place == "touched"]
-    assert count.low >= 5.0  # so anything may be missed: what stops most is cheapest
+    assert count.high >= 5.0  # so anything may be missed: what stops most is cheapest, as a rule
