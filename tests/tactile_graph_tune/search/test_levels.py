@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from helpers_cli import disc
 from helpers_tune import LADDER, frames
-from tactile_graph import loads
+from tactile_graph import Circle, Mask, loads
 from tactile_graph_tune import Request
 from tactile_graph_tune.choices.comparisons import Comparison
 from tactile_graph_tune.choices.declared import Chosen
@@ -34,8 +36,15 @@ WASTEFUL = LADDER.replace("touched: footprint.count > 0", f"touched: {EITHER}").
 
 
 def tuned(text: str = LADDER, n: int = 48, **asked: object) -> Tuning:
-    request = Request(loads(text), rounds=1, levels=True, **asked)  # type: ignore[arg-type]
+    pipeline = loads(text, steps={"slow_disc": slow_disc} if "slow_disc" in text else None)
+    request = Request(pipeline, rounds=1, levels=True, **asked)  # type: ignore[arg-type]
     return searched(request, frames(n), [], lambda what, n, of: None)
+
+
+def slow_disc(mask: Mask) -> Circle:
+    """Return a disc as late as no busy machine makes anything else."""
+    time.sleep(0.003)
+    return disc(mask)
 
 
 def test_dials_are_the_numbers_of_comparisons_and_of_what_an_or_joins() -> None:
@@ -130,10 +139,11 @@ def test_what_is_as_good_stays_and_the_rest_is_turned() -> None:
 
 @pytest.mark.slow
 def test_limits_are_those_of_the_file_whatever_settings_are_chosen() -> None:
-    heavy = LADDER.replace("level_v: 0.5", "level_v: 5").replace(", with: {fail_at_x: 1}", "")
+    heavy = LADDER.replace("level_v: 0.5", "level_v: 5")
+    heavy = heavy.replace("disc, in: merged, with: {fail_at_x: 1}", "slow_disc, in: merged")
     its = tuned(heavy, most_error=9.0, free=(Free("footprint.level_v", (0.5,)),))
     assert its.means(its.goal.given, its.split.choosing).missed == 1.0  # nothing is that heavy
     other = its.variants[1]
     found = its.resamples().of_all(Choice(1, other.given.order, other.given.chosen))
     (count,) = [k for place, k in found if place == "touched"]
-    assert count.high >= 5.0  # so anything may be missed: what stops most is cheapest, as a rule
+    assert count.low >= 5.0  # so anything may be missed: what stops most is cheapest
