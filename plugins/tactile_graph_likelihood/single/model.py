@@ -412,7 +412,10 @@ def _prior_of(
     (left, top), (width, height) = grid[:2].tolist(), size_of(grid, place[1])
     if not math.isfinite(largest_cm):
         largest_cm = max(math.hypot(width, height), 2.0 * usual_cm)
-    extra = 2.0 * math.log(math.log(largest_cm / smallest_cm) / math.log(largest_cm / usual_cm))
+    extra = 0.0
+    if smallest_cm < usual_cm < largest_cm:
+        wider = math.log(largest_cm / smallest_cm) / math.log(largest_cm / usual_cm)
+        extra = 2.0 * math.log(wider)
     return np.array([left, top, width, height, smallest_cm, largest_cm, whole, math.nan, extra])
 
 

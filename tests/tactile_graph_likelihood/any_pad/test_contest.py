@@ -9,10 +9,12 @@ import pytest
 
 from helpers_likelihood import made
 from tactile_graph import Image, load
+from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.choose import Locate, probabilities
 from tactile_graph_likelihood.any_pad.contest import _first_look, tops_of_each
 from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateRectangle
 from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single.any_pressure import EVEN
 from tactile_graph_likelihood.single.model import EVERY, FIRST, MORE, SAME, Model
 
@@ -166,3 +168,17 @@ def test_a_books_edge_is_as_narrow_as_it_is():
         found = LocateRectangle()(image)
         held += abs(found.breadth_cm - 0.5) < 2.5 * found.breadth_std_cm
     assert held >= 8
+
+
+@many
+@pytest.mark.parametrize("largest_cm", [0.3, 0.5, 0.4 * 1.3])
+def test_a_largest_size_below_the_usual_least_one_leaves_thin_rectangles_alone(largest_cm):
+    values = np.zeros((16, 16))
+    values[6:9, 6:9] = 3.0
+    image = Image(values, (1.3, 1.3), (-0.15, -0.15), "volt")
+    settings = LocateSettings(largest_cm=largest_cm)
+    with pytest.raises(Degenerate, match="no such outline"):
+        LocateDisc(settings)(image)
+    found = LocateRectangle(settings)(image)
+    assert 0.0 < found.breadth_cm <= found.length_cm <= 2.0 * largest_cm
+    assert Locate(settings=settings)(image).name == "rectangle"
