@@ -34,14 +34,6 @@ def enclosed_by(part: Found) -> int:
 
 def within(on: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return which elements cannot be left for the pad's edge by bare ones side by side."""
-    bare = np.pad(~on, 1, constant_values=True)
-    out, n = np.zeros_like(bare), 0
-    out[[0, -1]], out[:, [0, -1]] = True, True
-    while (reached := int(np.count_nonzero(out))) > n:
-        n, before = reached, out.copy()
-        out[1:] |= before[:-1]
-        out[:-1] |= before[1:]
-        out[:, 1:] |= before[:, :-1]
-        out[:, :-1] |= before[:, 1:]
-        out &= bare
-    return (bare & ~out)[1:-1, 1:-1]
+    from scipy.ndimage import binary_fill_holes
+
+    return np.asarray(binary_fill_holes(on) & ~on, np.bool_)
