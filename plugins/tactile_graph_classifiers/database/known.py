@@ -107,6 +107,13 @@ class Known:
         few = [f"{o.name} ({o.statistics.n})" for o in self.objects if o.statistics.n < FEW]
         return f"fewer than {FEW} readings of {one_of(few, 6)}" if few else ""
 
+    def nothing_varies(self) -> DataError:
+        """Return the error that no object has two readings."""
+        return DataError(
+            self.where,
+            "no object has two readings, so nothing says how much readings vary; learn more",
+        )
+
     def chosen(self, features: Sequence[str] | None) -> Known:
         """Return the objects with these features alone.
 

@@ -66,10 +66,7 @@ class Examples(NamedTuple):
         if min(counts) < 1:
             raise DataError(known.where, f"{known.names[counts.index(0)]!r} has no readings")
         if max(counts) < 2:
-            raise DataError(
-                known.where,
-                "no object has two readings, so nothing says how much readings vary; learn more",
-            )
+            raise known.nothing_varies()
         labels = np.repeat(np.arange(len(counts)), counts)
         return cls(np.concatenate([o.readings for o in known.objects]), labels,
                    _runs(counts, 1))  # fmt: skip

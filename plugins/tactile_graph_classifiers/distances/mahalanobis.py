@@ -9,7 +9,6 @@ import numpy as np
 from annotated_types import Ge, Gt, Lt, MinLen
 from numpy.typing import NDArray
 
-from tactile_graph.errors import DataError
 from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.distances.classifier import DEFAULT_FEATURES, Lookup
 from tactile_graph_classifiers.distances.identity import Identity
@@ -104,10 +103,7 @@ class _Shrinkage(NamedTuple):
     def of(cls, known: Known, prior: float) -> _Shrinkage:
         freedom = float(np.maximum(known.counts - 1.0, 0.0).sum())
         if freedom == 0.0:
-            raise DataError(
-                known.where,
-                "no object has two readings, so nothing says how much readings vary; learn more",
-            )
+            raise known.nothing_varies()
         readings = np.concatenate([o.readings for o in known.objects])
         extent = np.ptp(readings, axis=0)
         # a feature that is the same in every reading says nothing until one differs

@@ -9,7 +9,6 @@ import numpy as np
 from annotated_types import Gt, Lt, MinLen
 from numpy.typing import NDArray
 
-from tactile_graph.errors import DataError
 from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.distances.classifier import (
     DEFAULT_FEATURES,
@@ -19,7 +18,7 @@ from tactile_graph_classifiers.distances.classifier import (
 from tactile_graph_classifiers.distances.identity import Identity
 from tactile_graph_classifiers.distances.left_out import LeftOut, largest_accepted, left_out
 from tactile_graph_classifiers.distances.nearest import nearest_normalised
-from tactile_graph_classifiers.distances.variances import variances_of
+from tactile_graph_classifiers.distances.variances import borrowed_variances_of, variances_of
 from tactile_graph_classifiers.measuring.measurements import Measurements
 
 Array = NDArray[np.float64]
@@ -107,7 +106,7 @@ class MinimumDistanceNormalised:
 
     def _learned(self, known: Known, confidence: float) -> Array:
         """Return the largest squared distance at which each object is accepted, shape (K,)."""
-        variances = _variances(known)
+        variances = borrowed_variances_of(known)
         typical = np.array(
             [self._typical(k, m, v) for k, (m, v) in enumerate(zip(known.means, variances,
                                                                    strict=True))]
@@ -142,19 +141,3 @@ class MinimumDistanceNormalised:
             if typical > 0.0:
                 ratios.append(float(self._share @ (parts / largest) / typical))
         return np.array(ratios, dtype=np.float64)
-
-
-def _variances(known: Known) -> Array:
-    """Return how each object's features vary about its mean, shape (K, F).
-
-    That of an object of one reading is what the others' variance makes of a further reading.
-    """
-    variances = np.diagonal(known.covariances, axis1=1, axis2=2)
-    single = known.counts < 2
-    if single.all():
-        raise DataError(
-            known.where,
-            "no object has two readings, so nothing says how much readings vary; learn more",
-        )
-    common = np.diagonal(known.scatters.sum(axis=0)) / (known.counts[~single] - 1.0).sum()
-    return np.where(single[:, None], 2.0 * common, variances)

@@ -40,3 +40,25 @@ def variances_of(known: Known) -> Array:
                     " 'mahalanobis'",
                 )
     return np.ascontiguousarray(variances)
+
+
+def borrowed_variances_of(known: Known) -> Array:
+    """Return the same, whatever varies; an object of one reading borrows from the others.
+
+    Its variance is what theirs makes of a further reading.
+
+    Parameters
+    ----------
+    known : Known
+
+    Raises
+    ------
+    DataError
+        If no object has two readings.
+    """
+    variances = np.diagonal(known.covariances, axis1=1, axis2=2)
+    single = known.counts < 2
+    if single.all():
+        raise known.nothing_varies()
+    common = np.diagonal(known.scatters.sum(axis=0)) / (known.counts[~single] - 1.0).sum()
+    return np.where(single[:, None], 2.0 * common, variances)
