@@ -11,12 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.errors import DataError, UsageError, did_you_mean, one_of, without
+from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.quantities import is_quantity
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
+from tactile_graph_sources.stores.layout import load_zarr
 
 FORMAT = "tactile-graph node images"
 """What such files say of themselves."""
@@ -43,13 +44,11 @@ def read_store(reading: Reading) -> Iterator[Frame]:
     Raises
     ------
     DataError
-        As `read_node`, and if Zarr is not installed or the store is damaged.
+        As `read_node`, and if the store is damaged.
+    UsageError
+        If Zarr is not installed.
     """
-    try:
-        import zarr
-    except ImportError as error:
-        missing = "Zarr stores need the 'zarr' extra: pip install \"tactile-graph[zarr]\""
-        raise UsageError(without("zarr", error, missing)) from error
+    zarr = load_zarr()
     try:
         group: Any = zarr.open_group(str(reading.path), mode="r")
         names = [n for n, _ in group.members(max_depth=None) if f"{n}/values" in group]
