@@ -104,18 +104,21 @@ def without_repeats(frames: Sequence[Frame]) -> list[Frame]:
     UsageError
         If a recording has none in which something is seen to lie but such.
     """
-    first = {_values_of(f): f.label for f in reversed(frames) if _is_seen(f)}
-    left = [f for f in frames if not _is_seen(f) or first[_values_of(f)] == f.label]
-    alone = {f.label for f in left if _is_seen(f)}
-    for frame in frames:
-        if _is_seen(frame) and frame.label not in alone:
-            n = sum(_is_seen(f) for f in frames if f.label == frame.label)
+    images = [(f, _values_of(f) if _is_seen(f) else None) for f in frames]
+    first: dict[object, str] = {}
+    for frame, values in images:
+        first.setdefault(values, frame.label)
+    left = [(f, values) for f, values in images if values is None or first[values] == f.label]
+    alone = {f.label for f, values in left if values is not None}
+    for frame, values in images:
+        if values is not None and frame.label not in alone:
+            n = sum(f.label == frame.label and its is not None for f, its in images)
             raise UsageError(
                 f"{frame.label}: all {n} frames in which something lies have, value by value, the "
-                f"images of frames of {first[_values_of(frame)]}; of several recordings some "
-                "choose and the others report, so give each once"
+                f"images of frames of {first[values]}; of several recordings some choose and the "
+                "others report, so give each once"
             )
-    return left
+    return [f for f, _ in left]
 
 
 def _is_seen(frame: Frame) -> bool:
