@@ -27,7 +27,6 @@ Name = Literal["disc", "ellipse", "rectangle"]
 FEW = 12.0
 """Touched elements by which shapes are told apart half as well as their evidence says."""
 
-
 FEWEST = 5
 """Touched elements from which on shapes are told apart: an ellipse has as many unknowns, and around
 fewer its top is as flat as the pad is wide."""

@@ -35,7 +35,6 @@ gains, which no outline explains. Without foam they are 0 and 1."""
 SHARED_BY = 80
 """Touched elements from which on it is so; among fewer are fewer neighbours."""
 
-
 LARGEST = 700.0
 """Of log odds."""
 

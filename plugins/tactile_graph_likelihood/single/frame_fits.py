@@ -71,19 +71,16 @@ class FrameFits:
             if tops[k].unsure and tops[k].evidence > likeliest - HOPELESS:
                 tops[k] = outline.even.likeliest(self.readings, tops[k], attempts=MORE)
             if outline.even.kind == ELLIPSE and tops[k].mode.height == -math.inf:
-                tops[k] = self._as_round(outline.even, tops)
+                tops[k] = self._near_a_disc(outline.even, tops) or tops[k]
             self._add((k, EVEN), outline.even, tops[k])
 
-    def _as_round(self, ellipse: Model, tops: Sequence[Likeliest]) -> Likeliest:
+    def _near_a_disc(self, ellipse: Model, tops: Sequence[Likeliest]) -> Likeliest | None:
         """Return the most likely ellipse near a disc, where moments of few elements gave none."""
-        nowhere = next(top for top in tops if top.mode.height == -math.inf)
-        discs = zip(self.outlines, tops, strict=True)
-        its = [
-            outline.even.point_of(top)
-            for outline, top in discs
-            if outline.even.kind == DISC and top.mode.height > -math.inf
-        ]
-        return ellipse.likeliest_near(self.readings, as_ellipse_of_disc(its[0])) if its else nowhere
+        for outline, top in zip(self.outlines, tops, strict=True):
+            if outline.even.kind == DISC and top.mode.height > -math.inf:
+                begin = as_ellipse_of_disc(outline.even.point_of(top))
+                return ellipse.likeliest_near(self.readings, begin)
+        return None
 
     def look_under(self, asked: Sequence[str]) -> dict[str, float]:
         """Look at the likely ones under other pressures; return each's probability beforehand."""
