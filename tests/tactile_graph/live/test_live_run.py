@@ -125,13 +125,19 @@ def test_a_pipeline_that_is_to_take_over_may_be_tried_before_with_a_state_of_its
     assert [live.result["more"] for live in run] == [5, 11]
 
 
-def test_a_paused_run_lets_frames_pass_and_answers_one_for_each_step() -> None:
+def begun() -> tuple[Fed, LiveRun[Any], Iterator[Any]]:
+    """Return a run that has answered its first frame, and what feeds it."""
     fed = Fed()
     run = LiveRun(pipeline(), fed)
     results = iter(run)
     fed._given.append(frame(0, 0))
     fed._more.set()
     assert next(results).result.frame.index == 0
+    return fed, run, results
+
+
+def test_a_paused_run_lets_frames_pass_and_answers_one_for_each_step() -> None:
+    fed, run, results = begun()
     run.pause()
     fed.give(frame(1, 1))
     run.step()
@@ -145,12 +151,7 @@ def test_a_paused_run_lets_frames_pass_and_answers_one_for_each_step() -> None:
 
 
 def test_steps_that_are_asked_for_while_it_runs_are_not_saved_up() -> None:
-    fed = Fed()
-    run = LiveRun(pipeline(), fed)
-    results = iter(run)
-    fed._given.append(frame(0, 0))
-    fed._more.set()
-    assert next(results).result.frame.index == 0
+    fed, run, results = begun()
     run.step()
     run.pause()
     fed.give(frame(1, 1))

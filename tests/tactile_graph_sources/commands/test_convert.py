@@ -184,6 +184,17 @@ def test_frames_that_ctrl_c_alone_ends_are_kept(
     assert len(list(recording(path=target, report=Report()))) == 3
 
 
+def ends_early(made: list[Frame], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have SIGTERM end a source of nine frames after the third."""
+
+    def ended(_step: str, _given: object, report: Report, _seed: int) -> Iterator[Frame]:
+        report.expect(9)
+        yield from made[:3]
+        raise Ended(signal.SIGTERM)
+
+    monkeypatch.setattr("tactile_graph_sources.commands.any_source.frames_of_source", ended)
+
+
 @pytest.mark.parametrize("ending", ["zarr", "npz", "csv"])
 @pytest.mark.parametrize("asked", [("--frames", "9"), ()])
 def test_frames_that_end_by_themselves_are_kept_all_or_none(
@@ -193,12 +204,7 @@ def test_frames_that_end_by_themselves_are_kept_all_or_none(
     ending: str,
     asked: tuple[str, ...],
 ) -> None:
-    def ended(_step: str, _given: object, report: Report, _seed: int) -> Iterator[Frame]:
-        report.expect(9)
-        yield from made[:3]
-        raise Ended(signal.SIGTERM)
-
-    monkeypatch.setattr("tactile_graph_sources.commands.any_source.frames_of_source", ended)
+    ends_early(made, monkeypatch)
     target = tmp_path / f"b.{ending}"
     if ending != "zarr":
         target.write_text("another")
@@ -214,12 +220,7 @@ def test_frames_that_end_by_themselves_are_kept_all_or_none(
 def test_frames_of_a_pad_that_a_signal_ends_are_kept_and_it_is_told(
     tmp_path: Path, made: list[Frame], monkeypatch: pytest.MonkeyPatch, asked: tuple[str, ...]
 ) -> None:
-    def ended(_step: str, _given: object, report: Report, _seed: int) -> Iterator[Frame]:
-        report.expect(9)
-        yield from made[:3]
-        raise Ended(signal.SIGTERM)
-
-    monkeypatch.setattr("tactile_graph_sources.commands.any_source.frames_of_source", ended)
+    ends_early(made, monkeypatch)
     target = tmp_path / "b.npz"
     got = CliRunner().invoke(cli, ["convert", "--source", "serial", *asked, str(target)])
     assert (got.exit_code, got.stderr.strip()) == (128 + signal.SIGTERM, "ended by SIGTERM")
