@@ -9,6 +9,7 @@ import numpy as np
 from annotated_types import Len
 
 from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.around import posterior_around
 from tactile_graph_likelihood.any_pad.contest import tops_of_each
 from tactile_graph_likelihood.any_pad.first_fit import gains_hold
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
@@ -125,14 +126,14 @@ class Locate:
         chance = probabilities(tops, readings)
         best = max(chance, key=chance.__getitem__)
         shares = dict.fromkeys(Located._fields[3:], 0.0) | chance
-        shape = likely(every[best].around(readings, tops[best]))
+        shape = likely(posterior_around(every[best], readings, tops[best]))
         return Located(shape, best, chance[best], **shares)
 
 
 def _as_disc(every: Mapping[str, AnyPad], readings: Readings) -> Located:
     """Return the disc as `locate_disc` does, no more likely than any other shape."""
     its, readings, even = every["disc"].first(readings)
-    shape = likely(its.around(readings, its.completed(readings, even)))
+    shape = likely(posterior_around(its, readings, its.completed(readings, even)))
     chance = dict.fromkeys(every, 1.0 / len(every))
     shares = dict.fromkeys(Located._fields[3:], 0.0) | chance
     return Located(shape, "disc", chance["disc"], **shares)

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
+from tactile_graph_likelihood.any_pad.around import posterior_around
 from tactile_graph_likelihood.any_pad.first_fit import first_fit
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad
@@ -47,7 +48,7 @@ class LocateOne:
     def posterior(self, image: Image) -> Posterior:
         """Return the outline's posterior; parameters and errors as of a call."""
         fits, readings, even = first_fit(image, self._pad, self._gap_cm, self._any_pad)
-        found = fits.around(readings, fits.completed(readings, even))
+        found = posterior_around(fits, readings, fits.completed(readings, even))
         return self._placing(image, [found])[0]
 
 

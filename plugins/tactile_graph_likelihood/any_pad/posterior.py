@@ -76,6 +76,7 @@ def on_any_pad(
     inflation: float,
     unevenness: float,
     hidden_cm2: float = 0.0,
+    lopsided: float = 0.0,
 ) -> AnyPadPosterior:
     """Return a posterior with another evidence, its variance inflated, its usual deviation told.
 
@@ -89,6 +90,8 @@ def on_any_pad(
         Standard deviation of ln gain, as told, times the pitch in cm to the power 3/2.
     hidden_cm2 : float
         Variance of its lengths that no fit tells of, as where a pattern of the load is left over.
+    lopsided : float
+        As of `AnyPadPosterior`.
     """
     size, usual = float(found.mean[2]), USUAL
     if found.kind != DISC:
@@ -102,7 +105,7 @@ def on_any_pad(
         covariance.flat[: lengths * (len(covariance) + 1) : len(covariance) + 1] += hidden_cm2
         values["covariance"] = covariance
     values["evenly"] = DISC_EVENLY if found.kind == DISC else 1.0
-    values["lopsided"] = 0.0
+    values["lopsided"] = lopsided
     values["filtered"] = False
     its = object.__new__(AnyPadPosterior)
     vars(its).update(values)  # a frozen dataclass sets its fields one by one, by a call each

@@ -152,9 +152,10 @@ def _is_foam(part: Part, loads: Values, limits: Values) -> bool:
 def has_no_foam(readings: Readings) -> bool:
     """Return whether readings lie so far below their neighbours that there is no foam.
 
-    Nor anything else that carries a little of each load to the neighbours.
+    Nor anything else that carries a little of each load to the neighbours. Where foam was undone
+    there was some.
     """
-    part = _shown(readings)
+    part = None if readings.through_foam is not None else _shown(readings)
     if part is None or widest.call(part.loads, part.states, NARROWEST) > 0.0:
         return False
     return leaked.call(part.loads, part.states) < LEAKS

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tactile_graph_likelihood.any_pad import localise
+from tactile_graph_likelihood.any_pad.around import posterior_around
 from tactile_graph_likelihood.any_pad.clump import without_alone, without_lone
 from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse, LocateRectangle
 from tactile_graph_likelihood.any_pad.observed import observed
@@ -125,7 +126,7 @@ def searched(kind, shape, pads):
             true = frame.truth[0].shape
             fits, readings, even = step._any_pad.first(observed(frame.image, step._pad, None))
             tops = fits.completed(readings, even)
-            x, y = fits.around(readings, tops).mean[:2]
+            x, y = posterior_around(fits, readings, tops).mean[:2]
             rows.append((tops[EVEN].evidence, math.hypot(x - true.x_cm, y - true.y_cm)))
     return np.array(rows).T
 

@@ -1,0 +1,284 @@
+"""``posterior_around``: what fits under all pressures come to, on any pad."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactile_graph.errors import Degenerate
+from tactile_graph_likelihood.any_pad.filtered import as_filtered
+from tactile_graph_likelihood.any_pad.from_frame import (
+    AS_LOADS,
+    contrast_of,
+    evened_by_foam,
+    learned,
+    strays_beyond,
+    variance_inflation,
+)
+from tactile_graph_likelihood.any_pad.left_open import (
+    PATTERN,
+    UNSEEN,
+    fewness,
+    hidden_by,
+    is_scattered,
+    looseness,
+    unseen_share,
+)
+from tactile_graph_likelihood.any_pad.localise import PRESSURES, AnyPad
+from tactile_graph_likelihood.any_pad.lopsided import lopsided
+from tactile_graph_likelihood.any_pad.posterior import (
+    AnyPadPosterior,
+    evenly_spread,
+    inflated,
+    on_any_pad,
+    resized,
+    stretched,
+    within,
+)
+from tactile_graph_likelihood.any_pad.pressure_chances import (
+    FALL,
+    FOAM,
+    log_chances,
+    on_foam,
+    shared_by,
+)
+from tactile_graph_likelihood.any_pad.through_foam import has_no_foam
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
+from tactile_graph_likelihood.single.any_pressure import EVEN, FOAM_ODDS, mixed
+from tactile_graph_likelihood.single.changed import changed
+from tactile_graph_likelihood.single.element_terms import CONTRAST
+from tactile_graph_likelihood.single.maximise import Mode
+from tactile_graph_likelihood.single.model import Likeliest
+from tactile_graph_likelihood.single.noise import SPREADS
+from tactile_graph_likelihood.single.posterior import Posterior
+from tactile_graph_likelihood.single.problem import LARGE_PAD
+from tactile_graph_likelihood.single.readings import Readings, is_row
+
+NEGLIGIBLE = 0.03
+"""Probability over the likeliest pressure's below which one is left out."""
+
+PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 2.8}
+"""Share that is added to the variance where a pressure of one or two numbers explains the load: no
+face presses quite like that, and foam shares gains that the fit takes for the outline's."""
+
+TOLD_FOAM = 0.8
+"""The same under foam that is told, whose width nobody knows to better than a tenth."""
+
+UNSURER = 1.3
+"""Times the variance of a normal distribution around an outline with an angle that a sample of it
+would come to, for a quick answer: between two rows of elements nothing holds its sides."""
+
+UNSUREST = 2.3
+"""The same of a rectangle under a pressure, which has nine unknowns, for any other answer."""
+
+FEW_POINTS = 64
+"""Points in which the posterior of what is rather noise is looked at, as wide as the pad."""
+
+FINER = 2.0
+"""By how much more precisely an outline is sampled the fewer elements are touched."""
+
+
+def posterior_around(
+    fits: AnyPad, readings: Readings, tops: Mapping[str, Likeliest]
+) -> AnyPadPosterior:
+    """Return the posterior around the most likely outlines, over all pressures.
+
+    Parameters
+    ----------
+    fits : AnyPad
+    readings : Readings
+        As `AnyPad.first` gives them.
+    tops : mapping of str to Likeliest
+        By pressure, as of `AnyPad.completed`.
+
+    Notes
+    -----
+    The likeliest of the fits is sampled with the noise that it has found, an even face with the
+    law's exponent; the others stand for themselves as normal distributions, by their evidence over
+    what neighbouring elements share. On a pad of more than 1024 elements a pattern that an even
+    face leaves only widens the posterior.
+    """
+    return _Around(fits, readings, tops).posterior()
+
+
+@dataclass(frozen=True)
+class _Around:
+    """What fits of a frame found under some pressures, and what they come to."""
+
+    fits: AnyPad
+    readings: Readings
+    tops: Mapping[str, Likeliest]
+
+    def posterior(self) -> AnyPadPosterior:
+        """Return the posterior over all pressures."""
+        told, readings, tops = self.fits.told, self.readings, self.tops
+        logs = self._log_chances()
+        best = max(logs, key=logs.__getitem__)
+        shares = {part: math.exp(log - logs[best]) for part, log in logs.items()}
+        its = self._weighed(best, shares)
+        pressed = sum(share * self._wider(part) for part, share in shares.items())
+        evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
+        whole = on_any_pad(
+            its,
+            evidence,
+            pressed / sum(shares.values()),
+            told.noise.sigma * float(readings.grid[2]) ** 1.5,
+            self._hidden(its.alike) + readings.length_std_cm**2,
+            self._missed() if best == EVEN else 0.0,
+        )
+        if readings.filtered:
+            whole = as_filtered(whole, float(readings.grid[2]))
+        whole = stretched(whole, readings)
+        if is_row(readings):
+            whole = within(whole, *told.range_cm(readings))
+        if told.kind != RECTANGLE or self.fits.quick or self._is_large:
+            return whole
+        whole = resized(whole, UNSEEN * unseen_share(tops[EVEN].fit.fall))
+        reaches_beyond = self.fits.reaches_beyond(readings, tops[best])
+        return whole if reaches_beyond else evenly_spread(whole)
+
+    @property
+    def _is_large(self) -> bool:
+        return self.readings.states.size > LARGE_PAD
+
+    def _log_chances(self) -> dict[str, float]:
+        # A pressure is told by all of a face: elements count for as much less along both axes.
+        shared = shared_by(self.tops.values(), self.readings.touched) ** 2
+        odds = FOAM_ODDS * self._foam_by_scatter()
+        return log_chances(self.tops, shared, self.readings.touched, odds)
+
+    def _weighed(self, best: str, shares: Mapping[str, float]) -> Posterior:
+        """Return the mixture of the fits by their shares, of which the best has 1."""
+        found = {best: self._looked_at(best)}
+        for part, share in shares.items():
+            if part != best and share > NEGLIGIBLE:
+                found[part] = self._normal(part)
+        its = found[best]
+        if len(found) > 1:
+            weighed = {p: changed(f, log_evidence=math.log(shares[p])) for p, f in found.items()}
+            its = mixed(weighed, dict.fromkeys(weighed, 1.0))
+        elif best != EVEN:
+            its = changed(its, pressures={best: 1.0})
+        if self.readings.through_foam is not None:
+            its = changed(its, pressures=on_foam(its.pressures))
+        return its
+
+    def _missed(self) -> float:
+        """Return how much what an even face's outline misses lies to a side, 0 where foam blurs it.
+
+        Nor is it looked at on a pad of more than 1024 elements.
+        """
+        told, readings = self.fits.told, self.readings
+        if told.noise.foam_cm > 0.0 or readings.through_foam is not None or self._is_large:
+            return 0.0
+        point = told.point_of(self.tops[EVEN])
+        return max(lopsided.call(told.kind, point, readings.grid, readings.states), 0.0)
+
+    def _foam_by_scatter(self) -> float:
+        """Return by how much readings' scatter makes foam more probable than a round face."""
+        if FALL not in self.tops or FOAM not in self.tops:
+            return 1.0
+        if has_no_foam(self.readings):
+            return 0.0
+        told = math.log(self.fits.told.noise.sigma)
+        by_foam, by_face = (float(self.tops[part].mode.p[-2]) - told for part in (FOAM, FALL))
+        return evened_by_foam(by_foam, by_face, self.readings.touched)
+
+    def _wider(self, part: str) -> float:
+        """Return by how much the variance under a pressure is larger than that of its fit."""
+        told = self.fits.told
+        wider = 1.0 + PRESSED.get(part, TOLD_FOAM if told.noise.foam_cm > 0.0 else 0.0)
+        if told.kind == DISC:
+            return wider
+        if self.fits.quick:
+            return UNSURER * wider
+        return UNSUREST * wider if part != EVEN and told.kind == RECTANGLE else wider
+
+    def _hidden(self, alike: float) -> float:
+        """Return the variance in cm^2 of lengths that a pattern hides where it is not looked into.
+
+        ``alike`` is that of the posterior.
+        """
+        if self.fits.quick:
+            left = hidden_by(alike, self.readings) if len(self.tops) == 1 else 0.0
+            return left + looseness(self.readings)
+        return hidden_by(PATTERN, self.readings) if self._is_large and alike > PATTERN else 0.0
+
+    def _normal(self, part: str) -> Posterior:
+        """Return the normal distribution around a fit, widened by what neighbours share."""
+        told, n, top, row = self.fits.told, self.fits.n_even, self.tops[part], is_row(self.readings)
+        if part == EVEN and self.fits.quick:
+            its = told.normal_around(top, n + 1, self._pull(), row)
+        else:
+            own = 0 if part == EVEN else len(PRESSURES[part])
+            its = told.normal_around(top, n + own, row=row)
+        return inflated(its, variance_inflation(top.fit.neighbours, self.readings.touched))
+
+    def _pull(self) -> Values:
+        """Return the slope of what an even face's scatter says of the law's exponent."""
+        noise, pull = self.fits.told.noise, np.zeros(self.fits.n_even + 1)
+        sigma = float(self.tops[EVEN].mode.p[-2])
+        contrast = contrast_of(noise, sigma, self.readings, self.fits.law)
+        pull[-1] = (contrast.power - noise.contrast) / SPREADS[CONTRAST] ** 2
+        return pull
+
+    def _looked_at(self, part: str) -> Posterior:
+        """Return a likeliest fit's posterior: sampled, but for an outline with an angle pressed.
+
+        That has nine unknowns and more, for which few points are worse than none. Nor is a sample
+        taken whose points are worth fewer than there are unknowns, as where strays explain all
+        there is, unless it promises less than a normal distribution around the top.
+        """
+        fits, is_disc = self.fits, self.fits.told.kind == DISC
+        if fits.quick and not fits.reaches_beyond(self.readings, self.tops[part]):
+            normal = self._normal(part)
+            if not is_disc or normal.centre_std_cm <= fits.sampled_above_cm:
+                return normal
+        if part != EVEN and not is_disc:
+            return self._normal(part)
+        try:
+            found = self._sampled(part)
+        except Degenerate:
+            return self._normal(part)
+        if found.equal_points > fits.n_even:
+            return found
+        return max(found, self._normal(part), key=lambda its: its.centre_std_cm)
+
+    def _sampled(self, part: str) -> Posterior:
+        """Return the posterior under a pressure, with the noise that its fit has found.
+
+        Where neighbours are alike, readings scatter less about their own mean than gains do, by as
+        much as elements are shared.
+        """
+        told, n, readings, top = self.fits.told, self.fits.n_even, self.readings, self.tops[part]
+        point = told.point_of(top)
+        shared = variance_inflation(top.fit.neighbours, readings.touched)
+        strays = strays_beyond(told, readings, point)
+        contrast, by_law = AS_LOADS, part == EVEN and not self._is_large
+        if by_law:
+            contrast = contrast_of(told.noise, float(point[-2]), readings, self.fits.law)
+        noise = learned(told.noise, point[-2:], readings.touched, strays, contrast, shared)
+        loose = looseness(readings)
+        if part == EVEN and self.fits.quick and told.kind == DISC:
+            model = changed(told, noise=changed(noise, estimated=("contrast",)))
+            return model.posterior_around(readings, _first(top, 1 + n), loose)
+        # Of few elements a point costs little, and the posterior is far from normal.
+        precision = told.precision / (1.0 + FINER * fewness(readings))
+        estimated = "contrast" if by_law else part
+        noise = changed(noise, estimated=() if estimated == EVEN else (estimated,))
+        model = changed(told, noise=noise, precision=precision)
+        if by_law:
+            begin = point[: n + 1].copy()
+            begin[-1] = noise.contrast
+            if is_scattered(told.kind, readings, point):
+                model = changed(model, most_points=FEW_POINTS)
+            return model.posterior_near(readings, begin, loose)
+        return model.posterior_around(readings, _first(top, n + len(PRESSURES[part])), loose)
+
+
+def _first(top: Likeliest, count: int) -> Mode:
+    """Return the first numbers of a top, the others known."""
+    return Mode(top.mode.p[:count].copy(), top.mode.root[:count, :count].copy(), top.mode.height)
