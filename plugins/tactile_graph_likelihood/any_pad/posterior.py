@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 from tactile_graph_likelihood.geometry.outlines import DISC, Values, sizes
-from tactile_graph_likelihood.single.changed import changed
+from tactile_graph_likelihood.single.changed import changed, fields_of
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
 
@@ -28,7 +28,6 @@ DISC_EVENLY, EVENLY = 8.0, 2.0
 rectangle that reaches beyond the pad's edge, and of other outlines, one."""
 
 LEAST = 1e-6  # cm: a size that is none
-_FIELDS = [field.name for field in fields(Posterior)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +95,7 @@ def on_any_pad(
     size, usual = float(found.mean[2]), USUAL
     if found.kind != DISC:
         size, usual = math.sqrt(abs(size * float(found.mean[3]))), ALONG * USUAL
-    values = {name: getattr(found, name) for name in _FIELDS}
+    values = fields_of(found)
     values["usual_std_cm"] = usual * unevenness / math.sqrt(max(size, LEAST))
     values["log_evidence"] = log_evidence
     values |= _wider(found, inflation)

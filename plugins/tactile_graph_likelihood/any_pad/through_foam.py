@@ -182,17 +182,39 @@ def _undone(part: Part, loads: Values, limits: Values) -> float:
 
 def _shown(readings: Readings) -> Part | None:
     """Return the part of a pad that shows, None where too little of it lies within the pad."""
-    shows, (rows, columns) = readings.shows, readings.states.shape
-    down, across = np.flatnonzero(shows.any(axis=1)), np.flatnonzero(shows.any(axis=0))
-    inner = np.count_nonzero(shows[1:-1, 1:-1])
-    if min(rows, columns) < 3 or inner < (1.0 - ON_EDGE) * readings.touched:
+    first, left, loads, states = shown_part.call(readings.logs, readings.states, readings.touched)
+    if not loads.size:
         return None
-    first, last = max(int(down[0]) - MARGIN, 0), min(int(down[-1]) + MARGIN + 1, rows)
-    left, right = max(int(across[0]) - MARGIN, 0), min(int(across[-1]) + MARGIN + 1, columns)
-    states = readings.states.copy()
-    states[[0, -1]] = states[:, [0, -1]] = UNKNOWN
-    box = slice(first, last), slice(left, right)
-    return Part(box, np.exp(readings.logs[box]), states[box].copy())
+    box = slice(first, first + loads.shape[0]), slice(left, left + loads.shape[1])
+    return Part(box, loads, states)
+
+
+@compiled_as_is
+def shown_part(logs: Values, states: States, touched: int) -> tuple[int, int, Values, States]:
+    """Return a `Part`'s first row and column, loads and states; none of them if there is no part.
+
+    ``touched`` is the number of elements that show.
+    """
+    rows, cols = states.shape
+    first, last, left, right, inner = rows, -1, cols, -1, 0
+    for i in range(rows):
+        for j in range(cols):
+            if states[i, j] not in (ON, OVER):
+                continue
+            first, last = min(first, i), i
+            left, right = min(left, j), max(right, j)
+            inner += 0 < i < rows - 1 and 0 < j < cols - 1
+    if min(rows, cols) < 3 or last < 0 or inner < (1.0 - ON_EDGE) * touched:
+        return 0, 0, np.empty((0, 0)), np.empty((0, 0), np.uint8)
+    first, last = max(first - MARGIN, 0), min(last + MARGIN + 1, rows)
+    left, right = max(left - MARGIN, 0), min(right + MARGIN + 1, cols)
+    loads = np.exp(logs[first:last, left:right])
+    its = states[first:last, left:right].copy()
+    for i in range(first, last):
+        for j in range(left, right):
+            if i in (0, rows - 1) or j in (0, cols - 1):
+                its[i - first, j - left] = UNKNOWN
+    return first, left, loads, its
 
 
 def _laid_open(

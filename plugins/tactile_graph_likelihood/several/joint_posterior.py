@@ -36,6 +36,9 @@ from tactile_graph_likelihood.single.load_shares import foam_margin, shares_arou
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
 from tactile_graph_likelihood.single.problem import Places
 
+NONE_ESTIMATED = np.zeros(0, np.int64)
+"""Of the noise, which several outlines share as it is told."""
+
 WIDTH = 6
 """Columns of a table of points."""
 
@@ -226,7 +229,7 @@ def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> float
         steep = np.zeros((first, box[2], box[3]))
         here, _ = shares_with_slopes(
             kind, n, points[k], grid, noise, box, problem.states.shape[0],
-            problem.states.shape[1], steep,
+            problem.states.shape[1], NONE_ESTIMATED, steep,
         )  # fmt: skip
         for i in range(box[2]):
             for j in range(box[3]):

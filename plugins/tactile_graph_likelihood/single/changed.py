@@ -22,8 +22,11 @@ def changed(record: Record, **parts: Any) -> Record:
     What cached properties have kept is left behind, as it may hang on what is changed.
     """
     new: Record = object.__new__(type(record))
-    before, own = vars(record), vars(new)
-    for name in record.__dataclass_fields__:  # type: ignore[attr-defined]
-        own[name] = before[name]
-    own.update(parts)
+    vars(new).update(fields_of(record), **parts)
     return new
+
+
+def fields_of(record: Any) -> dict[str, Any]:
+    """Return a record's fields, without what its cached properties have kept."""
+    found, fields = vars(record).copy(), record.__dataclass_fields__
+    return found if len(found) == len(fields) else {name: found[name] for name in fields}

@@ -13,7 +13,9 @@ from tactile_graph_likelihood.geometry.outlines import Values, period, sizes, un
 from tactile_graph_likelihood.geometry.rim_slopes import covered_with_slopes, has_slopes
 from tactile_graph_likelihood.single.element_terms import (
     CONTRAST,
+    FALL,
     FOAM,
+    LEAN_Y,
     LEAST,
     OFF,
     ON,
@@ -34,10 +36,10 @@ from tactile_graph_likelihood.single.load_shares import (
     passed_on,
     press,
     shares_of,
-    weighed,
 )
 from tactile_graph_likelihood.single.log_posterior import noise_at
-from tactile_graph_likelihood.single.problem import Problem
+from tactile_graph_likelihood.single.pressure_slopes import is_pressed, press_with_slopes
+from tactile_graph_likelihood.single.problem import Places, Problem
 
 STEP = 0.02  # of a pitch: over which coverage is differenced
 FOAM_STEP = 0.005
@@ -202,66 +204,56 @@ def _rises(
     kind, corners, grid, estimated = problem.kind, problem.corners, problem.grid, problem.estimated
     first, (rows, columns) = unknowns(kind, corners), problem.states.shape
     rise = np.zeros((moving, box[2], box[3]))
-    share, bare = shares_with_slopes(kind, corners, p, grid, noise, box, rows, columns, rise)
+    share, pressed = shares_with_slopes(
+        kind, corners, p, grid, noise, box, rows, columns, estimated, rise
+    )
     for k in range(estimated.shape[0]):
         place = estimated[k]
-        if place < FOAM or place == CONTRAST:
-            continue
-        other, step = noise.copy(), FOAM_STEP if place == FOAM else PRESSURE_STEP
-        other[place] = noise[FOAM] * math.exp(step) if place == FOAM else noise[place] + step
-        moved = weighed(kind, corners, p, grid, other, box, rows, columns, bare.copy())
-        rise[first + 1 + k] = (moved - share) / step
+        if place == FOAM:
+            wider = blurred(pressed, noise[FOAM] * math.exp(FOAM_STEP), box, rows, columns)
+            rise[first + 1 + k] = (wider - share) / FOAM_STEP
+        elif FALL <= place <= LEAN_Y and not has_slopes(kind):
+            other = noise.copy()
+            other[place] += PRESSURE_STEP
+            moved = shares_of(kind, corners, p, grid, other, box, rows, columns)
+            rise[first + 1 + k] = (moved - share) / PRESSURE_STEP
     return share, rise
 
 
 @compiled_as_is
 def shares_with_slopes(
     kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, rows: int,
-    columns: int, rise: Values,
+    columns: int, estimated: Places, rise: Values,
 ) -> tuple[Values, Values]:  # fmt: skip
-    """Return `load_shares.shares_of` and bare coverage; write slopes along an outline's numbers.
+    """Return `load_shares.shares_of`, with foam and without; write slopes along a point's numbers.
 
-    Exact where coverage has exact ones and but for the pressure, else differenced. ``rise`` is
-    zeros, shape (N, rows, cols) of the box.
+    Those of the outline, and of the pressure where coverage has exact ones; others are differenced.
+    ``rise`` is zeros, shape (N, rows, cols) of the box.
     """
-    first = unknowns(kind, corners)
+    first, steps = unknowns(kind, corners), steps_of(kind, corners, p, grid)
     if has_slopes(kind):
         share = covered_with_slopes(kind, p, grid, box, rise)
-        bare = share.copy()
-        if not is_even(noise):
-            _press_with_slopes(kind, corners, p, grid, noise, box, share, rise)
-        if noise[FOAM] > 0.0:
-            share = blurred(share, noise[FOAM], box, rows, columns)
-            for k in range(first):
+        if not is_even(noise) or is_pressed(estimated):
+            press_with_slopes(kind, corners, p, grid, noise, box, estimated, steps, share, rise)
+        if noise[FOAM] <= 0.0:
+            return share, share
+        for k in range(rise.shape[0]):
+            if k < first or (k > first and FALL <= estimated[k - first - 1] <= LEAN_Y):
                 rise[k] = passed_on(rise[k], noise[FOAM], box, rows, columns)
-        return share, bare
-    bare = covered(kind, corners, p, grid, box)
-    share = weighed(kind, corners, p, grid, noise, box, rows, columns, bare.copy())
-    steps, at = steps_of(kind, corners, p, grid), p.copy()
+        return blurred(share, noise[FOAM], box, rows, columns), share
+    pressed = covered(kind, corners, p, grid, box)
+    if not is_even(noise):
+        press(kind, corners, p, grid, noise, box, pressed)
+    share = pressed
+    if noise[FOAM] > 0.0:
+        share = blurred(pressed, noise[FOAM], box, rows, columns)
+    at = p.copy()
     for k in range(first):
         at[k] += steps[k]
         moved = shares_of(kind, corners, at, grid, noise, box, rows, columns)
         at[k] = p[k]
         rise[k] = (moved - share) / steps[k]
-    return share, bare
-
-
-@compiled_as_is
-def _press_with_slopes(
-    kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, share: Values,
-    rise: Values,
-) -> None:  # fmt: skip
-    """Weigh coverage and its slopes, in place, by the pressure, whose own slope is differenced."""
-    steps, touched = steps_of(kind, corners, p, grid), np.where(share > 0.0, 1.0, 0.0)
-    pressure, at = touched.copy(), p.copy()
-    press(kind, corners, p, grid, noise, box, pressure)
-    for k in range(unknowns(kind, corners)):
-        at[k] += steps[k]
-        moved = touched.copy()
-        press(kind, corners, at, grid, noise, box, moved)
-        at[k] = p[k]
-        rise[k] = rise[k] * pressure + share * ((moved - pressure) / steps[k])
-    share *= pressure
+    return share, pressed
 
 
 @compiled_as_is

@@ -79,8 +79,8 @@ def press(
     """
     fall = min(max(noise[FALL], LEAST_FALL), MOST_FALL)
     leans = noise[LEAN_X] != 0.0 or noise[LEAN_Y] != 0.0
-    lean_x, lean_y = _leans_per_cm(kind, corners, p, noise)
-    centre_x, centre_y, lines = _gauge(kind, corners, p)
+    lean_x, lean_y = leans_per_cm(kind, corners, p, noise)
+    centre_x, centre_y, lines = gauge(kind, corners, p)
     half, pitch = 0.5 * grid[3], grid[2]
     first_x, first_y = grid[0] + half - centre_x, grid[1] + half - centre_y
     for i in range(shares.shape[0]):
@@ -92,12 +92,12 @@ def press(
             if leans:
                 shares[i, j] *= math.exp(lean_x * x + lean_y * y)
             if fall != 0.0:
-                r, steep = _distance(kind, lines, x, y)
-                shares[i, j] *= _mean_pressure(r, half * steep, fall)
+                r, steep = distance(kind, lines, x, y)
+                shares[i, j] *= mean_pressure(r, half * steep, fall)
 
 
 @compiled_as_is
-def _leans_per_cm(kind: int, corners: int, p: Values, noise: Values) -> tuple[float, float]:
+def leans_per_cm(kind: int, corners: int, p: Values, noise: Values) -> tuple[float, float]:
     """Return how much the logarithm of the pressure rises a cm to the right, and down."""
     lean_x, lean_y = noise[LEAN_X], noise[LEAN_Y]
     if kind == OVAL:
@@ -113,7 +113,7 @@ def _leans_per_cm(kind: int, corners: int, p: Values, noise: Values) -> tuple[fl
 
 
 @compiled_as_is
-def _mean_pressure(r: float, reach: float, fall: float) -> float:
+def mean_pressure(r: float, reach: float, fall: float) -> float:
     """Return the mean of ``(1 + fall) (1 - r**2) ** fall`` from r - reach to r + reach."""
     inner, outer = max(r - reach, 0.0), r + reach
     q_in, q_out = max(1.0 - inner * inner, RIM), max(1.0 - outer * outer, 0.0)
@@ -130,7 +130,7 @@ def _mean_pressure(r: float, reach: float, fall: float) -> float:
 
 
 @compiled_as_is
-def _gauge(kind: int, corners: int, p: Values) -> tuple[float, float, Values]:
+def gauge(kind: int, corners: int, p: Values) -> tuple[float, float, Values]:
     """Return an outline's centre, and the rows of what measures the distance from it.
 
     Of round outlines two rows: r**2 is the sum of the squares of (row . offset). Of the others a
@@ -166,13 +166,15 @@ def _gauge(kind: int, corners: int, p: Values) -> tuple[float, float, Values]:
 
 
 @compiled_as_is
-def _distance(kind: int, lines: Values, x: float, y: float) -> tuple[float, float]:
+def distance(kind: int, lines: Values, x: float, y: float) -> tuple[float, float]:
     """Return an offset's length over the outline's in that direction, and how steeply it grows."""
     if kind in (DISC, ELLIPSE, OVAL):
         a = lines[0, 0] * x + lines[0, 1] * y
         b = lines[1, 0] * x + lines[1, 1] * y
         r = math.sqrt(a * a + b * b)
-        if kind == DISC or r == 0.0:
+        if kind == DISC:
+            return r, lines[0, 0]
+        if r == 0.0:
             return r, math.sqrt(lines[0, 0] * lines[0, 0] + lines[0, 1] * lines[0, 1])
         slope_x = (a * lines[0, 0] + b * lines[1, 0]) / r
         slope_y = (a * lines[0, 1] + b * lines[1, 1]) / r
@@ -227,6 +229,11 @@ def _blurred_down(shares: Values, weights: Values, first: int, size: int) -> Val
     reach = weights.shape[0] - 1
     out = np.zeros((lines, across))
     for i in range(lines):
+        bare = True
+        for j in range(across):
+            bare = bare and shares[i, j] == 0.0
+        if bare:
+            continue
         kept = 0.0
         for k in range(-reach, reach + 1):
             if 0 <= first + i + k < size:
@@ -264,15 +271,6 @@ def shares_of(
         Of the whole image.
     """
     shares = covered(kind, corners, p, grid, box)
-    return weighed(kind, corners, p, grid, noise, box, rows, columns, shares)
-
-
-@compiled_as_is
-def weighed(
-    kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, rows: int,
-    columns: int, shares: Values,
-) -> Values:  # fmt: skip
-    """Return what `shares_of` does, from coverage, which it may change."""
     if not is_even(noise):
         press(kind, corners, p, grid, noise, box, shares)
     if noise[FOAM] > 0.0:
