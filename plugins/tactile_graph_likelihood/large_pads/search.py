@@ -24,12 +24,12 @@ from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_re
 from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
 from tactile_graph_likelihood.single.problem import Problem, turned_as
 from tactile_graph_likelihood.single.search import (
-    TRIES,
     likeliest_start,
     looked_at,
     outline_of_moments,
 )
 
+TRIES = 24  # outlines tried around the moments' own, in attempts after the first
 STRIDE = 1.5  # pitches that an edge moves a round: rows it never felt lie beyond
 SETTLED = 0.005  # gain in log posterior still promised, at which a top is taken for the mean
 LEAST_DROP, MOST_DROP = 0.25, 1.0  # of a normal log posterior, half: a deviation from its top

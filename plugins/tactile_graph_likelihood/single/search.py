@@ -40,7 +40,9 @@ NEAR = -1
 SAME = 0.5  # log posterior within which another attempt has found the same
 POOR, UNLIKELY = -1.5, -3.0
 """Surprise from which on there is no further attempt, and none once two have found the same."""
-TRIES = 24  # outlines tried around the moments own, in attempts after the first
+TRIES, MANY_TRIES = 8, 24
+"""Outlines tried around the moments' own, in attempts after the first; of any but discs and
+rectangles."""
 PLACE_OFF, SIZE_OFF, TURN_OFF = 0.2, 0.08, 0.1
 """How far they are off: in pitches, in the logarithm of a size, in radians."""
 
@@ -243,7 +245,8 @@ def attempted(
     if attempt <= 0 and start.shape[0] == p.shape[0]:
         p[:] = start
     else:
-        likeliest_start(problem, table, max(attempt, 0) * TRIES, p)
+        tries = TRIES if problem.kind in (DISC, RECTANGLE) else MANY_TRIES
+        likeliest_start(problem, table, max(attempt, 0) * tries, p)
         softly = attempt > 0 or (attempt == 0 and problem.kind != DISC)
     if softly:
         maximise(softened(problem), None, p, root, ROUGH, math.inf)
