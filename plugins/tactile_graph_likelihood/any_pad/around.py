@@ -64,6 +64,10 @@ PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 2.8}
 """Share that is added to the variance where a pressure of one or two numbers explains the load: no
 face presses quite like that, and foam shares gains that the fit takes for the outline's."""
 
+RISES, LESS = -0.5, 0.3
+"""Of how far a load falls to its rim, in standard deviations: it rises there if it is less; and the
+share of an edge's shift that is left then."""
+
 TOLD_FOAM = 0.8
 """The same under foam that is told, whose width nobody knows to better than a tenth."""
 
@@ -126,7 +130,7 @@ class _Around:
             evidence,
             pressed / sum(shares.values()),
             told.noise.sigma * float(readings.grid[2]) ** 1.5,
-            self._hidden(its.alike) + readings.length_std_cm**2,
+            self._hidden(its) + readings.length_std_cm**2,
             self._missed() if best == EVEN else 0.0,
         )
         if readings.filtered:
@@ -197,15 +201,18 @@ class _Around:
             return UNSURER * wider
         return UNSUREST * wider if part != EVEN and told.kind == RECTANGLE else wider
 
-    def _hidden(self, alike: float) -> float:
+    def _hidden(self, its: Posterior) -> float:
         """Return the variance in cm^2 of lengths that a pattern hides where it is not looked into.
 
-        ``alike`` is that of the posterior.
+        Less of it where the face rises to its rim: foam and round faces fall to it.
         """
         if self.fits.quick:
-            left = hidden_by(alike, self.readings) if len(self.tops) == 1 else 0.0
+            left = hidden_by(its.alike, self.readings) if len(self.tops) == 1 else 0.0
             return left + looseness(self.readings)
-        return hidden_by(PATTERN, self.readings) if self._is_large and alike > PATTERN else 0.0
+        if not self._is_large or its.alike <= PATTERN:
+            return 0.0
+        rises = its.fall < RISES and its.lean <= PATTERN
+        return hidden_by(LESS * PATTERN if rises else PATTERN, self.readings)
 
     def _normal(self, part: str) -> Posterior:
         """Return the normal distribution around a fit, widened by what neighbours share."""
@@ -257,7 +264,7 @@ class _Around:
         point = told.point_of(top)
         shared = variance_inflation(top.fit.neighbours, readings.touched)
         strays = strays_beyond(told, readings, point)
-        contrast, by_law = AS_LOADS, part == EVEN and not self._is_large
+        contrast, by_law = AS_LOADS, part == EVEN
         if by_law:
             contrast = contrast_of(told.noise, float(point[-2]), readings, self.fits.law)
         noise = learned(told.noise, point[-2:], readings.touched, strays, contrast, shared)

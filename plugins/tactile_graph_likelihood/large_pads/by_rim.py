@@ -23,6 +23,7 @@ from tactile_graph_likelihood.large_pads.covered_whole import (
 )
 from tactile_graph_likelihood.large_pads.rim import Runs, drawn_as, rim_count, rim_shares, runs_of
 from tactile_graph_likelihood.single.element_terms import (
+    CONTRAST,
     LEAST,
     OFF,
     ON,
@@ -127,17 +128,24 @@ def information_by_rim(problem: Problem, whole: CoveredWhole, p: Values, out: In
     share, rise = _rises_on_rim(problem, p, box, runs)
     its, on_rim = elements_of(whole, load, noise[SIGMA], box, runs), share.shape[0]
     scatter, total, along = scatter_of(noise), NO_SCORE, np.zeros(p.shape[0])
-    along[first] = 1.0
+    power, by_power = noise[CONTRAST], -1
+    for k in range(problem.estimated.shape[0]):
+        if problem.estimated[k] == CONTRAST:
+            by_power = first + 1 + k
+    along[first], sliver = 1.0, SLIVER ** (1.0 / power)
     for k in range(its.rows.shape[0]):
         row, column, part = its.rows[k], its.columns[k], share[k] if k < on_rim else 1.0
         state = problem.states[row, column]
         if part <= 0.0 or state == UNKNOWN:
             continue
         log = noise[LEAST] if state == OFF else problem.logs[row, column]
-        _, score = score_of(state, log, math.log(part) + load, scatter)
+        log_part = math.log(part)
+        _, score = score_of(state, log, power * log_part + load, scatter)
         if k < on_rim:
             for m in range(first):
-                along[m] = rise[m, k] / max(part, SLIVER)
+                along[m] = power * rise[m, k] / max(part, sliver)
+            if by_power >= 0:
+                along[by_power] = log_part
             add_outer(score, along, out)
             score = without_load(score)
         total = summed(total, score, 1.0)

@@ -18,6 +18,7 @@ from tactile_graph_likelihood.geometry.covered import Box, window
 from tactile_graph_likelihood.geometry.outlines import Values, bounds, unknowns
 from tactile_graph_likelihood.large_pads.rim import Runs, drawn_as, runs_of
 from tactile_graph_likelihood.single.element_terms import (
+    CONTRAST,
     FOAM,
     LEAST,
     OFF,
@@ -79,7 +80,7 @@ def by_rims(problem: Problem) -> bool:
     """Return whether all that is covered whole bears the same load."""
     even = problem.noise[FOAM] <= 0.0 and problem.grid[4] <= 0.0 and is_even(problem.noise)
     for k in range(problem.estimated.shape[0]):
-        even = even and problem.estimated[k] in (SIGMA, VOIDS)
+        even = even and problem.estimated[k] in (SIGMA, VOIDS, CONTRAST)
     return even
 
 
