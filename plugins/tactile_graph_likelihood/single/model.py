@@ -268,6 +268,8 @@ class Model:
                 fit = goodness_of_fit.call(problem, p)
                 likeliest = Likeliest(top, evidence, False, GoodnessOfFit(*fit))
                 return self.normal_around(likeliest, row=is_row(readings))
+            if mode.height == -math.inf:
+                mode = Mode(p, root, -math.inf)
             whole = covered_around.call(problem, mode.p)
             if len(whole.runs):
                 table = table[:WIDE_POINTS]
