@@ -24,9 +24,14 @@ def cells_of(words: NDArray[np.uint64], columns: int) -> NDArray[np.bool_]:
 def unmasked(
     values: NDArray[Any], valid: NDArray[np.bool_] | None
 ) -> tuple[NDArray[Any], NDArray[np.bool_] | None]:
-    """Return the values of a masked array as a plain one; its masked cells are invalid, and 0."""
-    if not isinstance(values, np.ma.MaskedArray):
+    """Return the values of a masked array as a plain one; its masked cells are invalid, and 0.
+
+    Arrays of any other kind, as a `numpy.matrix`, whose product is another, become plain ones, too.
+    """
+    if type(values) is np.ndarray:
         return values, valid
+    if not isinstance(values, np.ma.MaskedArray):
+        return np.asarray(values), valid
     there = ~np.ma.getmaskarray(values)
     if not there.all():
         valid = there if valid is None else valid & there

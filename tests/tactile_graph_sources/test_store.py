@@ -120,6 +120,23 @@ def test_a_recording_is_gone_on_with(tmp_path: Path) -> None:
     assert read[11].gap
 
 
+def test_a_journal_is_written_as_no_text_where_that_would_change_its_line_ends(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened, its_open, binary = [], os.open, 1 << 29
+
+    def noted(path: Any, flags: int, *more: Any) -> int:
+        opened.append(flags)
+        return its_open(path, flags & ~binary, *more)
+
+    (tmp_path / journal.JOURNAL).write_bytes(b"")
+    monkeypatch.setattr(journal, "BINARY", binary)
+    monkeypatch.setattr(os, "open", noted)
+    journal.append(tmp_path, b"a line\n")
+    assert (tmp_path / journal.JOURNAL).read_bytes() == b"a line\n"
+    assert opened[0] & binary
+
+
 def test_each_session_says_when_it_began(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path, given = tmp_path / "a.zarr", frames(12)
     days = ["2026-03-28T23:59:00+0100", "2026-03-29T08:00:00+0200", "2026-03-30T08:00:00+0200"]

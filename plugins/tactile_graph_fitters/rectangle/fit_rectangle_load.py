@@ -133,7 +133,7 @@ def _window(mask: Mask, image: Image | None, power: float) -> Window:
         bears = readings > 0.0
         if not bears.any():
             raise Degenerate(f"none of {len(rows)} cells that are on bears a load: nothing to fit")
-        found = np.log(readings[bears])
+        found = np.log(readings[bears], dtype=np.float64)
         logs[at[0][bears], at[1][bears]] = (found - _median(found)) / power
         states[at[0][~bears], at[1][~bears]] = UNKNOWN
         if image.valid is not None:

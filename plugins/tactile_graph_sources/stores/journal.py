@@ -24,6 +24,9 @@ from numpy.typing import NDArray
 
 from tactile_graph_sources.stores.layout import COLUMNS, JOURNAL
 
+BINARY = getattr(os, "O_BINARY", 0)
+"""Where there are two kinds of files, a journal is none of text, whose line ends become others."""
+
 MOST_DAMAGED = 1_000
 """Lines that are told of."""
 MOST_A_FRAME = 1 << 24
@@ -180,7 +183,7 @@ def lost_line(low: int, high: int, why: str) -> bytes:
 
 def append(path: Path, line: bytes) -> None:
     """Add a line to the journal of a store, or nothing, and wait until it is on the disc."""
-    file = os.open(path / JOURNAL, os.O_WRONLY | os.O_APPEND)
+    file = os.open(path / JOURNAL, os.O_WRONLY | os.O_APPEND | BINARY)
     try:
         end = os.fstat(file).st_size
         try:

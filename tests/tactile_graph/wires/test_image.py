@@ -127,3 +127,12 @@ def test_numpy_sees_values_with_nan_in_invalid_cells() -> None:
         np.asarray(holey, dtype=np.int64)
     with pytest.raises(ValueError, match="an image with invalid cells needs a copy"):
         np.array(holey, copy=False)
+
+
+@pytest.mark.filterwarnings("ignore:the matrix subclass:PendingDeprecationWarning")
+def test_a_matrix_is_held_as_a_plain_array_whose_product_is_element_by_element() -> None:
+    given = np.matrix([[1.0, 2.0], [3.0, 4.0]])
+    held = [Image(given).values, Image(np.zeros((2, 2))).with_values(given).values]
+    for values in held:
+        assert type(values) is np.ndarray
+        assert (values * values).tolist() == [[1.0, 4.0], [9.0, 16.0]]

@@ -182,3 +182,11 @@ def test_the_slope_is_that_of_the_cost(seed):
         step[k] = 1e-6
         high, low = (cost.loops(p + s, *rest, other) for s in (step, -step))
         assert slope[k] == pytest.approx((high - low) / 2e-6, abs=2e-4)
+
+
+def test_whole_numbers_of_eight_bits_give_what_the_same_as_floats_do():
+    rng = np.random.default_rng(5)
+    mask, image = reading(some_truth(rng), rng, 0.3)
+    counts = np.minimum(np.round(2.0 * image.values), 255.0)
+    found = [FitRectangleLoad()(mask, image.with_values(counts.astype(k))) for k in ("f8", "u1")]
+    assert found[0] == found[1]
