@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactile_graph.errors import Degenerate
+from tactile_graph_likelihood.any_pad.clump import is_in_parts
 from tactile_graph_likelihood.any_pad.filtered import as_filtered
 from tactile_graph_likelihood.any_pad.from_frame import (
     AS_LOADS,
@@ -132,6 +133,7 @@ class _Around:
             told.noise.sigma * float(readings.grid[2]) ** 1.5,
             self._hidden(its) + readings.length_std_cm**2,
             self._missed() if best == EVEN else 0.0,
+            is_in_parts(readings.through_foam or readings),
         )
         if readings.filtered:
             whole = as_filtered(whole, float(readings.grid[2]))

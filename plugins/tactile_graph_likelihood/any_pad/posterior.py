@@ -42,6 +42,8 @@ class AnyPadPosterior(Posterior):
         Independent points that one of its own is worth.
     lopsided : float
         How much what the outline misses lies to a side, in standard deviations.
+    in_parts : bool
+        Whether what is touched lies in parts, as of two objects.
     filtered : bool
         Whether the image seems smoothed, median-filtered or enlarged: deviations are wider for it.
     """
@@ -49,6 +51,7 @@ class AnyPadPosterior(Posterior):
     usual_std_cm: float = math.inf
     evenly: float = 1.0
     lopsided: float = 0.0
+    in_parts: bool = False
     filtered: bool = False
 
     @property
@@ -62,9 +65,12 @@ class AnyPadPosterior(Posterior):
 
         They do not where they are less likely than the model's own, whatever is estimated with the
         outline; where strays on a bare pad explain them as well; where what the outline misses lies
-        to a side; or where the centre's deviation is three and a half times the usual one.
+        to a side; where what is touched lies in parts; or where the centre's deviation is three and
+        a half times the usual one.
         """
-        if self.surprise <= STRANGE or self.log_evidence <= 0.0 or self.lopsided >= LOPSIDED:
+        if self.surprise <= STRANGE or self.log_evidence <= 0.0:
+            return False
+        if self.lopsided >= LOPSIDED or self.in_parts:
             return False
         return self.centre_std_cm < VAGUE * self.usual_std_cm
 
@@ -76,6 +82,7 @@ def on_any_pad(
     unevenness: float,
     hidden_cm2: float = 0.0,
     lopsided: float = 0.0,
+    in_parts: bool = False,
 ) -> AnyPadPosterior:
     """Return a posterior with another evidence, its variance inflated, its usual deviation told.
 
@@ -89,7 +96,7 @@ def on_any_pad(
         Standard deviation of ln gain, as told, times the pitch in cm to the power 3/2.
     hidden_cm2 : float
         Variance of its lengths that no fit tells of, as where a pattern of the load is left over.
-    lopsided : float
+    lopsided, in_parts : float, bool
         As of `AnyPadPosterior`.
     """
     size, usual = float(found.mean[2]), USUAL
@@ -104,7 +111,7 @@ def on_any_pad(
         covariance.flat[: lengths * (len(covariance) + 1) : len(covariance) + 1] += hidden_cm2
         values["covariance"] = covariance
     values["evenly"] = DISC_EVENLY if found.kind == DISC else 1.0
-    values["lopsided"] = lopsided
+    values["lopsided"], values["in_parts"] = lopsided, in_parts
     values["filtered"] = False
     its = object.__new__(AnyPadPosterior)
     vars(its).update(values)  # a frozen dataclass sets its fields one by one, by a call each

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tactile_graph.wires import Image
-from tactile_graph_likelihood.any_pad.clump import clump_of
+from tactile_graph_likelihood.any_pad.clump import clump_of, is_in_parts
 from tactile_graph_likelihood.any_pad.locate import LocateDisc
 from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
@@ -36,6 +36,30 @@ def test_what_hangs_together_over_single_voids_is_one_clump(touched):
 def test_a_chain_is_one_clump_in_whatever_order_it_is_met():
     ring = [(0, 0), (0, 8), (2, 0), (2, 8), (4, 2), (4, 4), (4, 6), (3, 8)]
     assert clump_of(readings(*ring, (8, 0))).touched == len(ring)
+
+
+def test_two_contacts_are_parts_and_neither_strays_nor_a_dead_row_make_any():
+    block = [(r, c) for r in range(3) for c in range(4)]
+    other = [(r + 6, c + 3) for r, c in block]
+    assert is_in_parts(readings(*block, *other))
+    assert is_in_parts(readings(*block, *other[:6]))
+    assert not is_in_parts(readings(*block, *other[:5]))
+    assert not is_in_parts(readings(*block, (6, 0), (6, 8), (8, 4), (8, 8), (0, 8), (3, 8)))
+    assert not is_in_parts(readings(*block, *((r + 4, c) for r, c in block)))
+
+
+@pytest.mark.slow
+def test_a_disc_over_two_contacts_does_not_fit():
+    rng, values = np.random.default_rng(3), np.zeros((16, 16))
+    values[3:7, 4:8] = values[10:14, 6:10] = 60.0
+    image = Image(values * np.exp(0.2 * rng.standard_normal(values.shape)), (1.3, 1.3))
+    found = LocateDisc()(image).posterior
+    assert found.in_parts
+    assert not found.fits
+    values[10:14, 6:10] = 0.0
+    one = LocateDisc()(image.with_values(np.where(values > 0.0, image.values, 0.0))).posterior
+    assert not one.in_parts
+    assert one.fits
 
 
 @pytest.mark.usefixtures("plain_kernels")
