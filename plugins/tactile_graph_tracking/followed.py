@@ -14,6 +14,9 @@ MEMORY, BEFORE = 20, 4
 """Frames over which it is told how an object's centre scatters, about; what is told before any is
 seen is worth so many."""
 
+SLIGHT = 1e-12
+"""Of a velocity's variance, the least that is left of it."""
+
 State = Literal["appears", "moves", "rests", "leaves"]
 
 
@@ -105,7 +108,8 @@ class Followed:
         self.y_cm += at * off_y
         self.vx_cm_s += along * off_x
         self.vy_cm_s += along * off_y
-        self.speed -= along * self.both
+        # Over a gap of years rounding would leave a variance below zero.
+        self.speed = max(self.speed - along * self.both, SLIGHT * self.speed)
         self.both *= 1.0 - at
         self.place *= 1.0 - at
         self.over_s = now_s - self.seen_s

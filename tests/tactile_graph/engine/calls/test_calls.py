@@ -6,7 +6,7 @@ import functools
 import gc
 import weakref
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -127,6 +127,29 @@ def test_a_frame_without_a_time_shares_that_between_the_known_ones(
     gaps = Gaps()
     frames = [Frame.of(np.ones((2, 2)), index=k, time_s=t) for k, t in enumerate(times_s)]
     assert [gaps.before(frame) for frame in frames] == told
+
+
+@pytest.mark.parametrize(
+    ("times_s", "device_s", "told"),
+    [
+        # Two bursts of an even clock.
+        ([5.0, 5.0, 5.0, 5.3, 5.3], [9.0, 9.1, 9.2, 9.3, 9.4], [None, 0.1, 0.1, 0.1, 0.1]),
+        # Begun anew, set by years, and no stamp: by arrival.
+        ([5.0, 5.1, 5.2, 5.4], [9.0, 9.2, 0.0, 0.2], [None, 0.2, 0.1, 0.2]),
+        ([5.0, 5.1, 5.2], [9.0, 1.7e9, 1.7e9 + 0.2], [None, 0.1, 0.2]),
+        ([5.0, 5.1, 5.3, 5.4], [9.0, None, 9.5, 9.7], [None, 0.1, 0.2, 0.2]),
+        # Thousandths that are told as seconds are none for long.
+        ([0.0, 0.01, 0.02, 0.03], [0.0, 50.0, 100.0, 150.0], [None, 50.0, 0.01, 0.01]),
+    ],
+)
+def test_the_gap_is_by_the_devices_clock_where_that_is_sound(
+    times_s: list[float], device_s: list[float | None], told: list[float | None]
+) -> None:
+    gaps = Gaps()
+    for k, (time_s, own_s, gap_s) in enumerate(zip(times_s, device_s, told, strict=True)):
+        frame = Frame.of(np.ones((2, 2)), index=k, time_s=time_s)
+        found = gaps.before(replace(frame, device_time_s=own_s))
+        assert found == (None if gap_s is None else pytest.approx(gap_s))
 
 
 def test_a_step_that_writes_has_one_instance_whatever_the_labels() -> None:
