@@ -21,6 +21,8 @@ FEWEST_FRAMES = 5
 """Frames from which on a cell that never changes says something."""
 TOUCHED = 0.2
 """Share of the peak above the offset that a cell's neighbours must have seen to call it dead."""
+IN_BURSTS = 0.2
+"""Share of frames at the very time of the one before, from which on times tell no single step."""
 OUT_OF_ORDER = 3.0
 """Usual steps by which frames may come out of order, on one clock."""
 STUCK, MOST_STUCK, FEWEST_TO_STICK = 0.05, 0.2, 30
@@ -49,7 +51,8 @@ class Measured:
     shape : (int, int)
         Rows and columns.
     rate_hz, jitter : float, optional
-        Frames a second, and the spread of the steps over their median; None without times.
+        Frames a second, and the spread of the steps over their median, None where frames come in
+        bursts; both None without times.
     n_leaps : int
         Times that go back, or leap by many usual steps.
     duration_s : float, optional
@@ -322,7 +325,10 @@ class _Pace(NamedTuple):
 
 
 def _pace(frames: Sequence[Frame]) -> _Pace:
-    timed = [(k, f.time_s) for k, f in enumerate(frames) if f.time_s is not None]
+    """Return how frames follow each other, by the device's clock where all have its time."""
+    by_device = all(f.device_time_s is not None for f in frames)
+    told = [(k, f.device_time_s if by_device else f.time_s) for k, f in enumerate(frames)]
+    timed = [(k, time_s) for k, time_s in told if time_s is not None]
     places, times = np.array(timed, dtype=np.float64).reshape(-1, 2).T
     taken = np.diff(times)
     steps = taken / np.diff(places)  # frames without a time may lie between
@@ -330,7 +336,11 @@ def _pace(frames: Sequence[Frame]) -> _Pace:
     if len(onward) < 1:
         return _Pace(None, None, 0, None)
     usual = float(np.median(onward))
+    passed = taken[(taken > 0) | (taken >= -OUT_OF_ORDER * usual)]
+    duration_s = float(passed.sum())
+    if np.count_nonzero(steps == 0.0) > IN_BURSTS * len(steps):
+        usual = duration_s / float(places[-1] - places[0])
+        return _Pace(1.0 / usual, None, 0, duration_s)
     jitter = float(np.median(np.abs(onward - usual))) * MAD_TO_SD / usual
     n_leaps = sum(is_leap(float(step), usual) for step in steps)
-    passed = taken[(taken > 0) | (taken >= -OUT_OF_ORDER * usual)]
-    return _Pace(1.0 / usual, jitter, n_leaps, float(passed.sum()))
+    return _Pace(1.0 / usual, jitter, n_leaps, duration_s)

@@ -136,7 +136,9 @@ def _size(sensor: Sensor) -> str:
 def _rate(measured: Measured) -> str:
     if measured.rate_hz is None:
         return "unknown: the frames have no times"
-    even = "even" if (measured.jitter or 0.0) < 0.02 else f"uneven by {measured.jitter:.0%}"
+    even = "in bursts of one time"
+    if (jitter := measured.jitter) is not None:
+        even = "even" if jitter < 0.02 else f"uneven by {jitter:.0%}"
     if n := measured.n_leaps:
         even += f" but for {n} {'leap' if n == 1 else 'leaps'} ahead or back"
     return f"{measured.rate_hz:.4g} frames a second, {even}, over {measured.duration_s:.4g} s"
