@@ -9,17 +9,15 @@ from typing import Any
 import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values
+from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.alike import alikeness_of
 from tactile_graph_likelihood.several.joint_posterior import JointProblem
 from tactile_graph_likelihood.several.kinds import draw
 from tactile_graph_likelihood.several.ladder import (
-    GAIN,
-    SKETCHED,
     Ladder,
     Mask,
     Sketches,
     dilated,
-    laid_on,
     neighbours,
 )
 from tactile_graph_likelihood.several.scene import Configuration, joined
@@ -32,9 +30,9 @@ Place = tuple[tuple[int, ...], Mask, float]
 PAIRS = 3
 """Pairs of sketches of a piece that are looked at."""
 
-PARTED, THREES, THREE = 2, 2, 15.0
-"""Pairs of sketches of two outlines' elements of which either half is parted again, triples that
-are drawn at most, and how much less log probability these may have than what they replace."""
+THREE_STARTS, THREES, THREE = 8, 2, 15.0
+"""Elements that three clusters of two outlines' elements begin from, triples that are drawn at
+most, and how much less log probability these may have than what they replace."""
 
 PARTED_IN_TWO, JOINED, SAME_NUMBER, WORSE = 10.0, 7.0, 20.0, 6.0
 """How much less log probability sketches may have to be drawn: than what they replace, where they
@@ -44,12 +42,19 @@ SURPLUS = 4.0
 """What may be left unexplained beyond what is usual, in nats, for outlines not to be looked for in
 any other way."""
 
+CUT_SURPLUS = -2.0
+"""The same of outlines more than the connected pieces: what is cut may be cut elsewhere."""
+
+GAIN = 0.1
+"""What a move must bring."""
+
 SPLIT, RECUT = 8.0, 9.0
 """What may be left unexplained, in nats, for an outline not to be parted, for two not to be parted
 anew."""
 
-NEAR = 10.0
-"""How much less log probability than the likeliest sketches others may have to be drawn."""
+NEAR, MOST_DRAWN = 10.0, 4
+"""How much less log probability than the likeliest sketches others may have to be drawn, and how
+many are."""
 
 NEARLY = 4.0
 """How much less evidence a move may bring at first, for all outlines to settle beside it."""
@@ -84,23 +89,27 @@ class Search(Ladder):
             self.noted(begin)
         if anew or begin is None or not self.explained(self.every[-1]):
             sketches = self.together(self.beginnings(room), 0)
-            if not self.explained(self.noted(self.begun(sketches))):
+            found = self.noted(self.begun(sketches))
+            if not self.explained(found, SURPLUS if self.uncut(found) else CUT_SURPLUS):
                 self.draw_ladder(sketches, room)
         better: Configuration | None = max(self.every, key=self.rank)
         while better is not None:
             better = self.improved(better, room)
         return self.best
 
-    def explained(self, found: Configuration) -> bool:
+    def explained(self, found: Configuration, most: float = SURPLUS) -> bool:
         """Return whether outlines leave hardly more unexplained than true ones would."""
-        return self.surplus(self.beside(found).load) <= SURPLUS * self.shared
+        return self.surplus(self.beside(found).load) <= most * self.shared
+
+    def uncut(self, found: Configuration) -> bool:
+        """Return whether outlines are no more than the pieces of touched elements side by side."""
+        return found.count <= int(components.call(self.on, 1).max())
 
     def draw_ladder(self, begin: Sketches, room: int) -> None:
         """Draw the likeliest sketches of all numbers."""
-        rungs = self.ladder(begin, room).values()
-        top = max(it.rank for it in rungs)
+        rungs = self.ladder(begin, room)[:MOST_DRAWN]
         for sketches in rungs:
-            if sketches.rank > top - NEAR:
+            if sketches.rank > rungs[0].rank - NEAR:
                 self.noted(self.begun(sketches))
 
     def begun(self, sketches: Sketches) -> Configuration:
@@ -196,27 +205,16 @@ class Search(Ladder):
             if worth > max(least, pairs[0][0] - WORSE):
                 yield self.drawn(pair, beside, before)
         if len(out) > 1 and more:
-            for worth, three in self.threes([pair for _, pair in pairs[:PARTED]], mask, beside):
+            for worth, three in self.threes(mask, beside):
                 if worth > before - THREE:
                     yield self.drawn(three, beside, before)
 
-    def threes(
-        self, pairs: list[Values], mask: Mask, beside: JointProblem
-    ) -> list[tuple[float, Values]]:
-        """Return triples of sketches for a mask, of pairs one of which is parted, the best first.
+    def threes(self, mask: Mask, beside: JointProblem) -> list[tuple[float, Values]]:
+        """Return triples of sketches for a mask, the best first, and their worth.
 
         Two outlines that cover three objects explain them half each: parting either gains nothing.
         """
-        found = list[tuple[float, Values]]()
-        for pair in pairs:
-            own = self.shares(pair)[0]
-            for k in range(2):
-                other = pair[1 - k : 2 - k]
-                beside_it = laid_on(beside, other)
-                for _, two in self.parted(mask & (own == k), beside_it, 1):
-                    three = np.concatenate([two, other])
-                    found.append((self.sketched(three, beside, SKETCHED - 1), three))
-        return sorted(found, key=lambda it: -it[0])[:THREES]
+        return self.clustered(mask, beside, 3, THREE_STARTS)[:THREES]
 
     def drawn(
         self, points: Values, beside: JointProblem, worth: float = -math.inf

@@ -46,8 +46,8 @@ noise's, and what it adds to ln of a size: the wider the edge, the smaller an ou
 LIGHTER = 1.5
 """What is taken off ln of a load, over what is added to ln of a size."""
 
-SHARP, REST = 0.65, 0.06
-"""Edge of sketches that others lie beside, and what is added to ln of a size at last."""
+REST = 0.06
+"""What is added to ln of a size at last."""
 
 ENOUGH = 0.1
 """Gain in log posterior below which a stage ends."""
@@ -316,18 +316,3 @@ def settle_sketches(problem: JointProblem, points: Values, first: int, last: int
             points[k, 5] -= LIGHTER * grow
         now = maximise_sketches(here, points, int(rounds), edge * problem.grid[3], out, new)
     return now
-
-
-@compiled_as_is
-def lay_sketches(problem: JointProblem, points: Values) -> None:
-    """Add what sketches bring to each element to what lies there."""
-    grid = problem.grid
-    half, rise, frame = SHARP * grid[3], np.empty(5), np.empty(8)
-    for k in range(points.shape[0]):
-        frame_of(points[k], frame)
-        for i in range(problem.load.shape[0]):
-            for j in range(problem.load.shape[1]):
-                x_cm = grid[0] + 0.5 * grid[3] + grid[2] * j
-                own = cover(frame, x_cm, grid[1] + 0.5 * grid[3] + grid[2] * i, half, rise)
-                problem.load[i, j] += math.exp(points[k, 5]) * own
-                problem.share[i, j] += own

@@ -1,4 +1,4 @@
-"""Whose each touched element is, by outlines or by sketches, and what none of them explains."""
+"""Whose each touched element is, by outlines, and what none of them explains."""
 
 from __future__ import annotations
 
@@ -97,25 +97,3 @@ def _nearest(own: Places, row: int, column: int) -> int:
             if own[i, j] >= 0 and off < far:
                 found, far = own[i, j], off
     return found
-
-
-@compiled_as_is
-def whose_by_sketches(problem: JointProblem, points: Values) -> Places:
-    """Return which sketch each touched element lies in, or nearest to; -1 of others."""
-    states, grid = problem.states, problem.grid
-    own = np.full(states.shape, -1, np.int64)
-    for i in range(states.shape[0]):
-        for j in range(states.shape[1]):
-            least = math.inf
-            if states[i, j] != ON:
-                continue
-            for k in range(points.shape[0]):
-                dx = grid[0] + 0.5 * grid[3] + grid[2] * j - points[k, 0]
-                dy = grid[1] + 0.5 * grid[3] + grid[2] * i - points[k, 1]
-                cos, sin = math.cos(points[k, 4]), math.sin(points[k, 4])
-                u = (cos * dx - sin * dy) / math.exp(points[k, 2])
-                v = (sin * dx + cos * dy) / math.exp(points[k, 3])
-                far = u**4 + v**4
-                if far < least:
-                    own[i, j], least = k, far
-    return own

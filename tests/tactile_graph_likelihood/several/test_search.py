@@ -42,7 +42,7 @@ def test_three_outlines_may_take_the_place_of_two_that_cover_three_objects():
     problem, row = three_discs()
     search = Search(problem, KINDS, 1.0, 1.0)
     pairs = [pair for _, pair in search.parted(search.on, problem, 3)]
-    triples = search.threes(pairs[:1], search.on, problem)
+    triples = search.threes(search.on, problem)
     worths = [worth for worth, _ in triples]
     assert worths == sorted(worths, reverse=True)
     best = triples[0][1]
@@ -81,6 +81,24 @@ def test_a_search_may_begin_with_nothing_but_what_explains_all(monkeypatch):
     for begin, anew in [(found, True), (found.without(1), False), (None, False)]:
         with pytest.raises(pytest.fail.Exception, match="begun anew"):
             search.divisions(6, begin, anew)
+
+
+@pytest.mark.parametrize(("pieces", "climbs"), [(1, True), (2, False)])
+def test_what_was_cut_is_looked_for_in_other_ways_unless_it_explains_more(
+    monkeypatch, pieces, climbs
+):
+    search = Search(problem_of_discs(), KINDS, 3.0, 1.0)
+    found = Configuration(np.full(2, DISC), np.zeros(2, np.int64), DISCS, 0.0)
+    if pieces == 2:
+        search.on[:, 6:8] = False
+    tried = []
+    monkeypatch.setattr(search, "surplus", lambda _: 0.0)
+    monkeypatch.setattr(search, "begun", lambda _: found)
+    monkeypatch.setattr(search, "noted", lambda its: search.every.append(its) or its)
+    monkeypatch.setattr(search, "improved", lambda *_: None)
+    monkeypatch.setattr(search, "draw_ladder", lambda *_: tried.append(True))
+    search.divisions(6)
+    assert tried == [True] * climbs
 
 
 def test_of_two_numbers_alike_likely_outlines_that_are_alike_are_likelier():

@@ -10,7 +10,6 @@ from helpers_likelihood import NOISE
 from tactile_graph_likelihood.several.sketch import (
     cover,
     frame_of,
-    lay_sketches,
     log_posterior,
     settle_sketches,
     step_from,
@@ -65,11 +64,23 @@ def test_the_log_posterior_rises_with_the_load_as_its_slope_says():
         assert slope[6 * k + 5] == pytest.approx(rise, abs=0.01)
 
 
+def lay(problem, point, half):
+    """Add what a sketch brings to each element to what lies there, in place."""
+    frame, rise = np.empty(8), np.empty(5)
+    frame_of.call(point, frame)
+    x0, y0, pitch, side = problem.grid[:4]
+    for i, j in np.ndindex(problem.load.shape):
+        x_cm, y_cm = (at + 0.5 * side + pitch * k for at, k in ((x0, j), (y0, i)))
+        own = cover.call(frame, x_cm, y_cm, half, rise)
+        problem.load[i, j] += np.exp(point[5]) * own
+        problem.share[i, j] += own
+
+
 def test_one_sketch_beside_another_adds_what_both_together_do():
     problem = problem_of_discs(2)
     points = np.array([[6.0, 6.0, 0.9, 0.9, 0.0, 4.5], [10.5, 6.0, 0.9, 0.9, 0.0, 4.5]])
     lain = problem._replace(load=problem.load.copy(), share=problem.share.copy())
-    lay_sketches.call(lain, points[:1])
+    lay(lain, points[0], 0.65)
     one = Information(np.empty(6), np.empty((6, 6)))
     both = Information(np.empty(12), np.empty((12, 12)))
     parts = [log_posterior.call(problem, points[:1], 0.65, one)]

@@ -6,17 +6,12 @@ import pytest
 from helpers_joint import DISCS, problem_of_discs
 from tactile_graph_likelihood.geometry.outlines import DISC
 from tactile_graph_likelihood.several.joint_posterior import Outlines, add_outline
-from tactile_graph_likelihood.several.whose import (
-    unexplained_by,
-    whose_by_outlines,
-    whose_by_sketches,
-)
-from tactile_graph_likelihood.single.element_terms import OFF, ON
+from tactile_graph_likelihood.several.whose import unexplained_by, whose_by_outlines
+from tactile_graph_likelihood.single.element_terms import ON
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")
 
 BOTH = Outlines(np.full(2, DISC), np.zeros(2, np.int64), DISCS)
-SKETCHES = np.array([[6.0, 6.0, 0.9, 0.9, 0.0, 4.5], [11.4, 6.2, 1.1, 0.7, 0.6, 4.5]])
 
 
 def touched_at(problem, *places):
@@ -53,17 +48,3 @@ def test_one_that_none_covers_is_the_nearest_ones_within_two_cells():
     next_to_it = row, column + 4
     own, _ = whose_by_outlines.call(touched_at(bare, near, next_to_it), BOTH)
     assert own[next_to_it] == 1
-
-
-def test_an_element_is_the_sketchs_that_it_lies_in_or_nearest_to():
-    problem = problem_of_discs()
-    own = whose_by_sketches.call(problem, SKETCHES)
-    rows, columns = np.nonzero(problem.states == ON)
-    x0, y0, pitch, side = problem.grid[:4]
-    dx = x0 + 0.5 * side + pitch * columns - SKETCHES[:, :1]
-    dy = y0 + 0.5 * side + pitch * rows - SKETCHES[:, 1:2]
-    cos, sin = np.cos(SKETCHES[:, 4:5]), np.sin(SKETCHES[:, 4:5])
-    u, v = (cos * dx - sin * dy) / np.exp(SKETCHES[:, 2:3]), sin * dx + cos * dy
-    assert (own[rows, columns] == (u**4 + (v / np.exp(SKETCHES[:, 3:4])) ** 4).argmin(axis=0)).all()
-    assert (own[problem.states == OFF] == -1).all()
-    assert set(np.unique(own)) == {-1, 0, 1}
