@@ -131,7 +131,7 @@ def _lower(image: Image) -> tuple[float, float, float, Values] | None:
 def _lower_beside(
     image: Image, rows: Cells, columns: Cells
 ) -> tuple[Cells | None, tuple[float, float, float, Values] | None]:
-    """Return which cells are neither dead nor on these lines, None for all, and their lower ones."""
+    """Return which cells are neither dead nor on these lines, None for all, and their readings."""
     values, usable = image.values, image.valid
     if rows.any() or columns.any():
         alive = ~rows[:, None] & ~columns
