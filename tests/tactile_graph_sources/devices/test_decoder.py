@@ -370,6 +370,17 @@ def test_values_out_of_range_never_go_on() -> None:
     assert "5000" in decoder.hint()
 
 
+def test_the_frame_after_one_out_of_range_says_so_in_a_chunk_of_its_own() -> None:
+    kit = BY_NAME["fabric-16x16"]
+    pads = pads_of(kit, 4)
+    pads[1] = pads[1].copy()
+    pads[1][3, 3] = 5000
+    decoder = decoder_of(kit)
+    chunks_of_one = [kit.encode(p, i) for i, p in enumerate(pads)]
+    got = [d for chunk in [kit.lead_in, *chunks_of_one] for d in decoder.feed(chunk)]
+    assert [d.gap for d in [*got, *decoder.boundary()]] == [False, True, False]
+
+
 def test_a_jump_in_the_sequence_is_counted_and_marked() -> None:
     kit = BY_NAME["fabric-16x16"]
     frames = [kit.encode(p, i) for i, p in enumerate(pads_of(kit, 6))]
