@@ -14,6 +14,9 @@ MEMORY, BEFORE = 20, 4
 """Frames over which it is told how an object's centre scatters, about; what is told before any is
 seen is worth so many."""
 
+ANYWHERE_CM = 1e3
+"""Standard deviation of a place before anything is seen there."""
+
 SLIGHT = 1e-12
 """Of a velocity's variance, the least that is left of it."""
 
@@ -57,12 +60,18 @@ class Followed:
         self.expected_x_cm, self.expected_y_cm = self.x_cm, self.y_cm
         self.n_seen = 1
         self.over_s = 0.0
-        """Time between the last two frames it was seen in."""
+        """Time between the last two frames it was seen in, those of one burst being one."""
+        self.is_mean = False
+        """Whether its velocity is the mean over that time, whatever it was at the end."""
         self.vx_cm_s = self.vy_cm_s = 0.0
         # Variances of place and velocity and their covariance, the same along x and y.
         self.place, self.both, self.speed = self.noise_cm**2, 0.0, self.fastest_cm_s**2
         self.scatter = 1.0
         """Mean squared distance from where it was expected, over what the filter makes of it."""
+        self.n_taken = 0
+        """Frames it was seen in, those of one burst being one."""
+        self._before: tuple[float, ...] = self._filtered(ANYWHERE_CM**2)
+        self.n_taken = 1
 
     @property
     def speed_std_cm_s(self) -> float:
@@ -79,6 +88,11 @@ class Followed:
         patience_s : float
             No velocity is believed for longer, except for as long as it was measured over.
         """
+        stale = dt_s > patience_s and agility_cm_s2 * dt_s**2 > STALE * self.noise_cm
+        if self.is_mean and not stale:
+            swerve = (agility_cm_s2 * self.over_s / 2.0) ** 2
+            self.speed = min(self.speed + swerve, self.fastest_cm_s**2)
+        self.is_mean = stale
         # After two frames a velocity is mostly noise: what it says is believed as far as it
         # stands out of that, or a gap would carry a resting object out of its own gate.
         swift = self.vx_cm_s**2 + self.vy_cm_s**2
@@ -87,23 +101,53 @@ class Followed:
         self.expected_x_cm = self.x_cm + trust * self.vx_cm_s * reach_s
         self.expected_y_cm = self.y_cm + trust * self.vy_cm_s * reach_s
         push = agility_cm_s2**2
-        if dt_s > patience_s and agility_cm_s2 * dt_s**2 > STALE * self.noise_cm:
+        if stale:
             self.vx_cm_s = self.vy_cm_s = self.both = push = 0.0
             self.speed = self.fastest_cm_s**2
+        self._pass(dt_s, push)
+
+    def _pass(self, dt_s: float, push: float) -> None:
+        """Move on by a time with a variance of the acceleration."""
         self.x_cm += self.vx_cm_s * dt_s
         self.y_cm += self.vy_cm_s * dt_s
         self.place += 2.0 * dt_s * self.both + dt_s**2 * self.speed + push * dt_s**4 / 4.0
         self.both += dt_s * self.speed + push * dt_s**3 / 2.0
         self.speed += push * dt_s**2
 
-    def see(self, contact: Any, x_cm: float, y_cm: float, now_s: float, call: int) -> None:
-        """Take in where it was seen."""
+    def see(
+        self, contact: Any, x_cm: float, y_cm: float, now_s: float, call: int, least_s: float = 0.0
+    ) -> None:
+        """Take in where it was seen, instead of where it was less than ``least_s`` ago."""
+        dt_s = now_s - self.seen_s
+        if late := dt_s < least_s:
+            self._take_back(dt_s)
+        self._before = self._filtered(self.place)
+        self._take_in(x_cm, y_cm)
+        self.over_s = self.over_s + dt_s if late else dt_s
+        self.contact, self.seen_s, self.call = contact, now_s, call
+        self.seen_x_cm, self.seen_y_cm = x_cm, y_cm
+        self.n_seen += 1
+
+    def _filtered(self, place: float) -> tuple[float, ...]:
+        """Return what taking in where it is seen changes."""
+        moves = self.x_cm, self.y_cm, self.vx_cm_s, self.vy_cm_s
+        return *moves, place, self.both, self.speed, self.scatter, self.n_taken, self.is_mean
+
+    def _take_back(self, dt_s: float) -> None:
+        """Be as if it had not been seen when it was last, a moment ago."""
+        self.x_cm, self.y_cm, self.vx_cm_s, self.vy_cm_s, *unsure = self._before
+        self.place, self.both, self.speed, self.scatter, n_taken, is_mean = unsure
+        self.n_taken, self.is_mean = int(n_taken), bool(is_mean)
+        self._pass(dt_s, 0.0)
+
+    def _take_in(self, x_cm: float, y_cm: float) -> None:
+        """Correct place and velocity by where it was seen."""
         spread = self.place + self.noise_cm**2
         at, along = self.place / spread, self.both / spread
         off_x, off_y = x_cm - self.x_cm, y_cm - self.y_cm
-        if self.n_seen > 1:  # what is seen first after it appears tells of its speed alone
+        if self.n_taken > 1:  # what is seen first after it appears tells of its speed alone
             odd = 0.5 * (off_x**2 + off_y**2) / spread
-            self.scatter += (odd - self.scatter) / min(self.n_seen + BEFORE, MEMORY)
+            self.scatter += (odd - self.scatter) / min(self.n_taken + BEFORE, MEMORY)
         self.x_cm += at * off_x
         self.y_cm += at * off_y
         self.vx_cm_s += along * off_x
@@ -112,7 +156,4 @@ class Followed:
         self.speed = max(self.speed - along * self.both, SLIGHT * self.speed)
         self.both *= 1.0 - at
         self.place *= 1.0 - at
-        self.over_s = now_s - self.seen_s
-        self.contact, self.seen_s, self.call = contact, now_s, call
-        self.seen_x_cm, self.seen_y_cm = x_cm, y_cm
-        self.n_seen += 1
+        self.n_taken += 1

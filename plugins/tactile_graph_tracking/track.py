@@ -30,6 +30,11 @@ PATIENCE_S, UNSEEN = 0.05, 2
 GATE_CM, GATE_PITCHES = 2.6, 2.0
 """The gate that is found: so wide, and no fewer pitches."""
 
+LEAST, LONGEST_S, USUAL_FRAMES = 0.25, 0.2, 200
+"""Frames that follow in less than this share of the usual time are handed over in one burst: only
+the last of it came about when it was taken. Usual is the mean over about so many frames, a pause
+counted as so long."""
+
 Reals = NDArray[np.float64]
 
 
@@ -52,6 +57,7 @@ class Track:
     squared log ratio of areas, which helps to tell objects apart that cross. An object not seen
     for ``patience_s`` leaves; until then it may come back under its id. Where frames come so far
     apart that the velocity before tells little, the velocity is the mean since the last frame.
+    Of frames that come in one burst the last stands for all.
 
     Parameters
     ----------
@@ -107,6 +113,7 @@ class Track:
         )
         self._confirm_frames = confirm_frames
         self._frame_s, self._most = frame_s, most
+        self._usual_s, self._n_gaps = frame_s, 1
         self._now_s, self._call, self._last_id = 0.0, 0, 0
         self._all: list[Followed] = []
 
@@ -153,15 +160,19 @@ class Track:
         dt_s = max(0.0, self._frame_s if gap_s is None else gap_s)
         self._now_s += dt_s
         self._call += 1
+        if gap_s is not None:
+            self._n_gaps = min(self._n_gaps + 1, USUAL_FRAMES)
+            self._usual_s += (min(dt_s, LONGEST_S) - self._usual_s) / self._n_gaps
         for one in self._all:
             one.go_on(dt_s, self._agility_cm_s2, self._patience_s)
 
     def _see(self, contacts: list[Any], xy: Reals, areas: Reals) -> None:
         """Tell each object which contact it is, and follow those that are nobody's."""
         pairs = paired(self._costs(xy, areas), ALONE)
+        least_s = LEAST * self._usual_s
         for k, i in pairs:
             x_cm, y_cm = xy[i].tolist()
-            self._all[k].see(contacts[i], x_cm, y_cm, self._now_s, self._call)
+            self._all[k].see(contacts[i], x_cm, y_cm, self._now_s, self._call, least_s)
         known = {i for _, i in pairs}
         fastest_cm_s = self._gate_cm / self._frame_s
         self._all += [

@@ -112,6 +112,48 @@ def test_after_a_long_gap_velocity_is_the_mean_since():
     assert tracks.tracks[0].vx_cm_s == pytest.approx(0.1, abs=0.01)
 
 
+@pytest.mark.parametrize("pause_s", [0.6, 10.0, 1e9])
+def test_how_fast_it_goes_after_a_pause_is_seen_soon(pause_s):
+    track = Track(patience_s="auto", rest_cm_s="auto")
+    for k in range(30):
+        gap_s = pause_s if k == 15 else DT
+        tracks = track([Spot(4.0 + 0.1 * k, 5.0)], gap_s=gap_s)
+        if k == 15:
+            assert tracks.tracks[0].vx_cm_s == pytest.approx(0.1 / pause_s, rel=0.01)
+        elif k > 20:
+            assert states(tracks) == {1: "moves"}
+            assert tracks.tracks[0].vx_cm_s == pytest.approx(5.0, rel=0.2)
+
+
+@pytest.mark.parametrize("within_s", [0.0, 2e-4])
+@pytest.mark.parametrize(("n_in_one", "stalls"), [(10, False), (50, True)])
+def test_frames_that_come_in_bursts_gain_no_speed(within_s, n_in_one, stalls):
+    """Each burst is handed over when its last frame is taken; or one is, after others came even."""
+    track, speeds, last_s, dt_s = Track(), [], 0.0, 0.01
+    for k in range(1, 401):
+        taken_s = k * dt_s
+        end_s = math.ceil((k - 0.5) / n_in_one) * n_in_one * dt_s
+        in_one = not stalls or 200 < k <= 200 + n_in_one
+        now_s = end_s - (end_s - taken_s) / dt_s * within_s if in_one else taken_s
+        (one,) = track([Spot(2.0 + 5.0 * taken_s, 5.0)], gap_s=now_s - last_s).tracks
+        last_s = now_s
+        speeds.append(one.vx_cm_s)
+    assert one.id == 1
+    assert max(speeds[20:]) < 7.0
+    assert speeds[-1] == pytest.approx(5.0, rel=0.1)
+
+
+def test_an_object_that_appears_within_a_burst_has_no_speed_from_it():
+    track = Track()
+    for k in range(100):
+        track([], gap_s=0.1 if k % 10 == 0 else 0.0)
+    for k in range(5):
+        (one,) = track([Spot(4.0 + 0.05 * k, 5.0)], gap_s=1e-4).tracks
+    assert one.speed_cm_s < 0.1
+    (one,) = track([Spot(4.7, 5.0)], gap_s=0.1).tracks
+    assert one.vx_cm_s == pytest.approx(5.0, rel=0.1)
+
+
 def test_farther_apart_than_their_patience_objects_are_expected_where_they_go():
     """It gains less than a gate from frame to frame, and goes more than two in the end."""
     track, x_cm = Track(patience_s=0.05, gate_cm=1.0), 0.0

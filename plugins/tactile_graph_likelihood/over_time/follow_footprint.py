@@ -26,6 +26,10 @@ LEAST_SCATTER = 0.02
 WORTH = 0.01
 """Share of the readings' variance that more frames must take off to be worth a new posterior."""
 
+STILL_MOVES = 0.5
+"""Odds that what moved with the last frame moves with this one, too: so much less with each frame
+at rest."""
+
 SOON_S = 0.1
 """Time between frames where no clock says."""
 
@@ -75,10 +79,11 @@ class FollowFootprint:
     -----
     At rest the frames' log loads are averaged: the variance of a reading is sigma**2 +
     frame_sigma**2 / n after n frames. A frame belongs to another placement where the odds of
-    `at_rest.AtRest.log_odds_of_move` and of ``rest_s`` say so. The sizes' posterior then becomes
-    their prior, its precision times (1 - r) / (1 + r), where r is ``fixed`` for an object that
-    was moved by nothing and falls to 0 over one pitch. It is taken where the evidence is larger
-    with it than without.
+    `at_rest.AtRest.log_odds_of_move` and of ``rest_s`` say so; what moved with the frame before is
+    likelier to move again, by odds that halve with each frame at rest. The sizes' posterior then
+    becomes their prior, its precision times (1 - r) / (1 + r), where r is ``fixed`` for an object
+    that was moved by nothing and falls to 0 over one pitch. It is taken where the evidence is
+    larger with it than without.
     """
 
     def __init__(
@@ -136,7 +141,8 @@ class FollowFootprint:
         resting = self._resting
         if resting is None or not resting.fits_grid(readings):
             return False
-        prior = math.log(max(math.expm1(min(gap_s / self._rest_s, 700.0)), 1e-12))
+        odds = math.expm1(min(gap_s / self._rest_s, 700.0))
+        prior = math.log(max(odds, STILL_MOVES**resting.frames, 1e-12))
         return resting.log_odds_of_move(readings) + prior < 0.0
 
     def _again(self, readings: Readings) -> Followed:

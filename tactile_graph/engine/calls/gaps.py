@@ -32,7 +32,8 @@ class Gaps:
         """Return the seconds since the last frame; None where no time says any."""
         time_s, last_s, known = self._time_of(frame), self._now_s, self._known
         self._n_since += 1
-        if time_s is None:
+        stands = known is not None and time_s == known[0] and not self._steps_s
+        if time_s is None or stands:
             return self._guessed(frame.index)
         n, untold = self._n_since, self._n_untold
         self._now_s, self._known = time_s, (time_s, frame.index)

@@ -67,6 +67,21 @@ def test_a_slide_that_keeps_the_gains_is_noticed_too():
         assert step(slid, gap_s=0.1).moved
 
 
+def test_a_slow_slide_that_keeps_the_gains_is_followed():
+    """By a twelfth of a cell a frame, few elements change each time."""
+    off = []
+    for seed in range(6):
+        step = made(FollowFootprint, on_pad="whole")
+        for k in range(24):
+            disc = Circle(9.0 + 0.1 * k, 9.5, 3.0)
+            image = drawn(disc, 60.0, np.random.default_rng(seed))
+            alone = made(FollowFootprint, on_pad="whole")(image)
+            followed = step(image, gap_s=0.1)
+            off.append((followed.shape.x_cm - disc.x_cm, alone.shape.x_cm - disc.x_cm))
+    rms_followed_cm, rms_alone_cm = np.sqrt(np.mean(np.square(off), axis=0))
+    assert rms_followed_cm < 1.15 * rms_alone_cm
+
+
 def test_more_weight_is_no_move_but_shows_in_the_load():
     rng, step = np.random.default_rng(2), made(FollowFootprint, on_pad="whole")
     image = drawn(Circle(10.0, 9.5, 5.5), 60.0, rng)

@@ -119,6 +119,8 @@ def test_each_label_has_its_own_state_and_clock() -> None:
         ([0.0, 0.5, None, 0.25, 0.75], [None, 0.5, 0.5, -0.75, 0.5]),  # a clock set back
         ([0.0, None, 1.0, None], [None, None, 0.5, 0.5]),
         ([None, None, 3.0], [None, None, None]),
+        ([7.0, 7.0, 7.0, 7.0], [None, None, None, None]),  # a clock that stands tells no time
+        ([7.0, 7.0, 7.0, 8.5, 8.5], [None, None, None, 0.5, 0.0]),
     ],
 )
 def test_a_frame_without_a_time_shares_that_between_the_known_ones(
