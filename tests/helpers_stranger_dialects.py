@@ -152,6 +152,13 @@ def _cells() -> Iterator[Dialect]:
         "without marks between thousands",
         values=once,
     )
+    cells = [[f"{v:,.0f}".replace(",", ".") for v in f.ravel()] for f in once]
+    timed = "".join(f"{0.04167 * k:.5f};{';'.join(c)}\n" for k, c in enumerate(cells))
+    yield _read(
+        "points before three decimals or none, and before five of the times",
+        f"t;{';'.join(f'R{r}C{c}' for r in range(8) for c in range(8))}\n{timed}",
+        np.array(cells, float).reshape(once.shape),
+    )
     pairs = ",".join(f'"({r}, {c})"' for r in range(8) for c in range(8))
     yield _read(
         "pandas, names that are pairs", _led((f"{x:.2f}" for x in CENT), f"t,{pairs}"), times_s=CENT

@@ -55,6 +55,7 @@ def recording(
     value_column: str = "",
     cells: str = "",
     first_cell: Literal[0, 1] | None = None,
+    pad: str | dict[str, Any] | list[str | dict[str, Any]] | None = None,
     report: Report,
 ) -> Iterator[Annotated[Frame, Quantity(of="quantity")]]:
     """Frames of one or more recordings, whatever device or program wrote them.
@@ -72,7 +73,7 @@ def recording(
         Shape of a frame, where the file cannot tell.
     pitch_cm : float or (float, float), optional
         Distance of neighbouring cells, or of columns and of rows; goes before the file's own.
-        Where neither says it, 1 cm is assumed and counted in the report.
+        Where neither says it, nor ``pad``, 1 cm is assumed and counted in the report.
     origin_cm : (float, float), optional
         Top left corner of the first cell in pad coordinates; goes before the file's own.
     quantity : str, optional
@@ -99,6 +100,9 @@ def recording(
     first_cell : int, optional
         Whether rows and columns count from 0 or from 1 in a table of one cell a line. Where neither
         this nor the cells tell, 1 is assumed and counted in the report.
+    pad : str, mapping or list of these, optional
+        Pads or their YAML files. Recordings of as many rows and columns that say no pitch have that
+        of the first such pad; those that can be of none of its grid are counted in the report.
     report : Report
         Takes the format that was recognised, counters, troubles, the number of frames to expect
         and the files' digests.
@@ -127,6 +131,7 @@ def recording(
         flip=flip,
         skip=skip,
         first_cell=first_cell,
+        pad=pad,
     )
     index = n_places = 0
     for one, label in _files(path, report):

@@ -21,6 +21,7 @@ from tactile_graph.cli.completions import (
     complete_with,
     is_source,
 )
+from tactile_graph.cli.told_pads import reads_for_told_pads
 from tactile_graph.errors import UsageError
 from tactile_graph.pipeline.named_files import is_there
 from tactile_graph.plugins import registry
@@ -158,6 +159,7 @@ def open_pipeline(
     step = source_named(pipeline, recordings, source, source_settings, span or Span())
     if replaced or step:
         pipeline = pipeline.with_settings(replaced, step)
+    pipeline = reads_for_told_pads(pipeline)
     _help_preparing(name, recordings, settings)
     return pipeline
 

@@ -58,6 +58,8 @@ class Feed:
     ranges : Ranges, optional
     in_stacks : bool
         Whether frames that are sent go in stacks where the source has them so.
+    is_led : bool
+        Whether steps that keep state see the frames before ``span``, too.
 
     Attributes
     ----------
@@ -76,12 +78,14 @@ class Feed:
         division: Division,
         ranges: Ranges | None,
         in_stacks: bool = False,
+        is_led: bool = False,
     ) -> None:
         self._pipeline, self._seed, self._report = pipeline, seed, report
         self._division, self._ranges = division, ranges
         low, high = span
         self._in_stacks = in_stacks and high is None
         self.start = low
+        self._first = 0 if is_led else low
         self._stop = high
         self.size = PortionSize() if ranges is None else PortionSize(MOST_READ)
         self._begun: Iterator[Portion] | None = None
@@ -150,7 +154,7 @@ class Feed:
             while low < end:
                 size = n if whole else self._whole_chunks(low, stop, n_workers, ranges.together)
                 high = min(low + size, end)
-                yield Portion(low, high, start=low if whole else max(start, self.start))
+                yield Portion(low, high, start=low if whole else max(start, self._first))
                 low = high
             start += n
 

@@ -52,6 +52,7 @@ def tell_apart(store: ObjectDatabase) -> None:
     store : ObjectDatabase
     """
     from tactile_graph_classifiers.distances.choosing import Examples, choose
+    from tactile_graph_classifiers.distances.left_out_recordings import by_recording
 
     known = store.known()
     if len(known.objects) < 2 or max(len(it.readings) for it in known.objects) < 2:
@@ -59,6 +60,8 @@ def tell_apart(store: ObjectDatabase) -> None:
     choice = choose(Examples.of(known))
     store.keep(choice, known)
     say(f"{store.path}: {choice}")
+    for line in by_recording(known, choice.manner).lines() if choice.n_left_out else ():
+        say(line, err=True)
     if known.few:
         tell_few(known)
 

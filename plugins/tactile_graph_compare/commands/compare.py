@@ -30,6 +30,7 @@ from tactile_graph.cli.many.options import (
     workers_options,
 )
 from tactile_graph.cli.targets import check_targets
+from tactile_graph.cli.told_pads import reads_for_told_pads
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
@@ -222,6 +223,7 @@ def _prepared(
         base, notes = first_source(prepared)
     named = source_named(base.pipeline, recordings, options.source, options.source_settings, span)
     placed = base.pipeline.with_settings({}, named) if named else base.pipeline
+    placed = reads_for_told_pads(placed, [variant.pipeline for variant in prepared])
     assert placed.source is not None
     return on_source(prepared, placed.source.name, placed.source.given), notes
 

@@ -10,17 +10,20 @@ from numpy.typing import NDArray
 
 from tactile_graph.quantities import unit_of
 from tactile_graph.wires import Image, Mask
-from tactile_graph_filters.readings.clipped_noise import clipped_noise
+from tactile_graph_filters.readings.clipped_noise import FEW_STEPS, clipped_noise, is_anywhere
 from tactile_graph_filters.readings.dead_below import dead_below
-from tactile_graph_filters.readings.dead_lines import dead_lines
+from tactile_graph_filters.readings.dead_lines import EQUAL_SHARE, dead_lines
 from tactile_graph_filters.readings.ordered import in_order
 
 Values = NDArray[np.float64]
+Cells = NDArray[np.bool_]
 EVERY = np.zeros((0, 0), np.bool_)
 """Stands for cells all of which are read."""
 
 LOW, MIDDLE = 0.05, 0.25
 """Shares of the cells, by rising reading: the unloaded ones are among the lower quarter."""
+UPPER = 0.75
+"""Up to which share it is asked whether readings lie side by side as a load's do."""
 LOW_TO_MIDDLE_SD = 0.9704
 """How far apart these lie in noise, in standard deviations."""
 NOISES = 10.0
@@ -47,8 +50,9 @@ def noise_level(image: Image) -> float:
     Parameters
     ----------
     image : Image
-        Unloaded in at least a quarter of its valid cells. Dead rows and columns are left out,
-        and cells that are dead far below the others (`dead_below`).
+        Unloaded in at least a quarter of its valid cells. Dead rows and columns are left out
+        (not those that merely nothing touches, on a pad that a device cuts off at its least
+        reading), and cells that are dead far below the others (`dead_below`).
 
     Returns
     -------
@@ -112,6 +116,22 @@ def lower_readings(image: Image) -> tuple[float, float, float] | None:
 def _lower(image: Image) -> tuple[float, float, float, Values] | None:
     """Return the lower readings, and of which ones; none where the first is no cell's reading."""
     rows, columns = dead_lines(image)
+    usable, found = _lower_beside(image, rows, columns)
+    if usable is None or found is None or not (rows.any() or columns.any()):
+        return found
+    low, base, _, seen = found
+    if not (low < base and seen.size):
+        return found
+    untouched = _untouched_lines(image, rows, columns, usable, low, seen)
+    if untouched is None:
+        return found
+    return _lower_beside(image, rows & ~untouched[0], columns & ~untouched[1])[1]
+
+
+def _lower_beside(
+    image: Image, rows: Cells, columns: Cells
+) -> tuple[Cells | None, tuple[float, float, float, Values] | None]:
+    """Return which cells are neither dead nor on these lines, None for all, and their readings."""
     values, usable = image.values, image.valid
     if rows.any() or columns.any():
         alive = ~rows[:, None] & ~columns
@@ -121,27 +141,53 @@ def _lower(image: Image) -> tuple[float, float, float, Values] | None:
     if usable is not None:
         values = values[usable]
     if values.size == 0:
-        return None
+        return usable, None
     seen = np.asarray(values, np.float64).ravel()
     low, middle = (int(share * (seen.size - 1)) for share in (LOW, MIDDLE))
     parted = np.partition(seen, (low, middle, seen.size - 1))
     lowest, base, peak = (float(parted[k]) for k in (low, middle, seen.size - 1))
     if lowest == base < peak:
-        lowest -= LOW_TO_MIDDLE_SD * _noise_above(image.values, usable, seen, base)
-        return lowest, base, peak, seen[:0]
-    return lowest, base, peak, seen
+        ordered = in_order(seen)
+        of_frame = cells_of(image.values, usable)
+        sigma = clipped_noise.call(*of_frame, ordered, base, least_step(ordered))
+        return usable, (lowest - LOW_TO_MIDDLE_SD * float(sigma), base, peak, seen[:0])
+    return usable, (lowest, base, peak, seen)
 
 
-def _noise_above(
-    values: NDArray[Any], usable: NDArray[np.bool_] | None, seen: Values, rest: float
-) -> float:
-    """Return the standard deviation of noise that is cut off at ``rest``, 0 without any."""
+def _untouched_lines(
+    image: Image, rows: Cells, columns: Cells, usable: Cells, low: float, seen: Values
+) -> tuple[Cells, Cells] | None:
+    """Return which rows and columns read the same only because nothing touches them, if any.
+
+    Notes
+    -----
+    They read the least of the other cells, and among the lower three quarters of these what reads
+    more lies side by side: it is a load. Noise that a device cuts off lies anywhere.
+    """
     ordered = in_order(seen)
-    steps = np.diff(ordered)
-    step = float(steps[steps > 0.0].min(initial=math.inf))
-    cells = np.ascontiguousarray(values, np.float64)
+    if low > ordered[0]:
+        return None
+    alike = image.values == low
+    rows = rows & (alike.mean(axis=1) >= EQUAL_SHARE)
+    columns = columns & (alike.mean(axis=0) >= EQUAL_SHARE)
+    if not (rows.any() or columns.any()):
+        return None
+    reach = float(ordered[int(UPPER * (ordered.size - 1))]) - low
+    hum = FEW_STEPS * least_step(ordered)
+    cells, known = cells_of(image.values, usable)
+    return None if is_anywhere.call(cells, known, low, reach, hum) else (rows, columns)
+
+
+def cells_of(values: NDArray[Any], usable: Cells | None) -> tuple[Values, Cells]:
+    """Return readings and which of them count, as `clipped_noise` takes them."""
     known = EVERY if usable is None else np.ascontiguousarray(usable)
-    return float(clipped_noise.call(cells, known, ordered, rest, step))
+    return np.ascontiguousarray(values, np.float64), known
+
+
+def least_step(ordered: Values) -> float:
+    """Return the least difference of two readings."""
+    steps = np.diff(ordered)
+    return float(steps[steps > 0.0].min(initial=math.inf))
 
 
 def level_above(spread: float, base: float, peak: float) -> float:

@@ -34,6 +34,7 @@ from tactile_graph_pads.learning.silent import Silence, silence
 from tactile_graph_pads.learning.touching import best_level, filled, least_level, placements
 from tactile_graph_pads.learning.turn_on import turn_on_of
 from tactile_graph_pads.pad import Pad
+from tactile_graph_pads.told_grid import close
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -138,6 +139,8 @@ def learn_pad(empty: Stack | None, objects: Stack | None, base: Pad | None = Non
             f"has {base.geometry.rows} x {base.geometry.columns} elements, the recordings have "
             f"{stack.shape[0]} x {stack.shape[1]}",
         )
+    if base is not None and not stack.pitch_assumed:
+        _check_pitch(base.geometry.pitch_cm, stack.image.pitch_cm)
     bare, step = _bare(stack, rest), step_of(stack.values)
     shows_from = least_level(rest.noise[rest.good], max(step, rest.step), bare)
     rest = rest.stepped(step)
@@ -146,6 +149,17 @@ def learn_pad(empty: Stack | None, objects: Stack | None, base: Pad | None = Non
         return _of_empty(stack, rest, shows_from, notes)
     known = _known_pad(base, stack, rest)
     return _of_objects(objects, bare, shows_from, known, notes)
+
+
+def _check_pitch(told_cm: float, recorded_cm: tuple[float, float]) -> None:
+    """Refuse a pad the elements of which lie otherwise: the learned one would be laid out so."""
+    if not close(told_cm, recorded_cm):
+        x, y = recorded_cm
+        raise DataError(
+            "--pad",
+            f"its elements are {told_cm:g} cm apart (element_cm and gap_cm), those of the"
+            f" recordings {x:g} x {y:g} cm",
+        )
 
 
 def _known_pad(base: Pad | None, stack: Stack, rest: Resting) -> _KnownPad:

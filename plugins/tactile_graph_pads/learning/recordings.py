@@ -116,7 +116,7 @@ def read_stack(
         np.array(grams),
         frames[0].image,
         {Path(name).name: digest for name, digest in report.digests.items()},
-        any("pitch is assumed" in what for what in report.counts),
+        any("pitch is assumed to be 1 cm" in what for what in report.counts),
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
+from tactile_graph_pads.learning.pressed import often_pressed
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -136,7 +137,8 @@ def resting_among_objects(values: Array, where: str) -> Resting:
     Notes
     -----
     Offset is the median over frames, and noise the root mean square of what lies below it: both
-    hold as long as an element is touched in less than half of the frames.
+    hold as long as an element is touched in less than half of the frames. Where the device cuts
+    readings off at rest, it may be touched oftener: `often_pressed`.
     """
     if len(values) < LEAST_FRAMES_WITH_OBJECTS:
         raise DataError(
@@ -149,11 +151,13 @@ def resting_among_objects(values: Array, where: str) -> Resting:
     if missing.all():
         raise DataError(where, "no element was ever read")
     held = np.where(missing, 0.0, values)
-    offset = np.nanmedian(held, axis=0)
+    offset, step = np.nanmedian(held, axis=0), step_of(held)
+    pressed, rest = often_pressed(held, offset, missing, step)
+    offset[pressed] = rest
     below = np.where(held < offset, held - offset, np.nan)
     with np.errstate(invalid="ignore"):
         squares = np.nansum(below**2, axis=0) / np.maximum((~np.isnan(below)).sum(axis=0), 1)
-    noise, step = np.sqrt(squares), step_of(held)
+    noise = np.sqrt(squares)
     stuck, still, _ = _odd(offset, noise, missing, step)
     _refuse_object(offset, stuck, missing, where, "in more than half of the frames, so that the "
                    "empty pad cannot be told; record it and give it by --empty")  # fmt: skip

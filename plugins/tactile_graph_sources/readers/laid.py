@@ -70,7 +70,8 @@ def laid_in(
     untold = times_s is not None and not np.isfinite(times_s).all()
     if untold or not values.flags.c_contiguous:
         return None
-    reading.grid(**grid)
+    rows, columns = values.shape[1:]
+    reading.grid((columns, rows) if reading.told.transpose else (rows, columns), **grid)
     is_own = reading.is_own
 
     def frames(reading: Reading, low: int, high: int) -> Iterator[Frame | FrameStack]:

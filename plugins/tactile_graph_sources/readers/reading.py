@@ -242,7 +242,7 @@ class Reading:
         values, mask = self._turned(values, mask, truth)
         image = Image(
             values,
-            *self.grid(pitch_cm, origin_cm, quantity),
+            *self.grid(values.shape, pitch_cm, origin_cm, quantity),
             mask,
         )
         gap = gap or not self._gaps.isdisjoint(("", sensor))
@@ -302,6 +302,7 @@ class Reading:
 
     def grid(
         self,
+        shape: tuple[int, ...],
         pitch_cm: tuple[float, float] | None = None,
         origin_cm: tuple[float, float] | None = None,
         quantity: str = "raw",
@@ -313,6 +314,8 @@ class Reading:
         DataError
             If they cannot be true, or the two disagree.
         """
+        if self.told.pads:
+            pitch_cm = self._beside_pads(shape, pitch_cm)
         return self._pitch(pitch_cm), self._origin(origin_cm), self._quantity(quantity)
 
     def _stack(
@@ -335,7 +338,7 @@ class Reading:
                 values *= factor
         if not -LARGEST <= values.min() <= values.max() <= LARGEST:  # no NaN is
             return None
-        images = ImageStack(values, *self.grid(**same))
+        images = ImageStack(values, *self.grid(values.shape[1:], **same))
         index = np.arange(self.index, self.index + len(values))
         place = np.arange(self.place, self.place + len(values))
         self.index += len(values)
@@ -354,6 +357,21 @@ class Reading:
             )
         values = np.ascontiguousarray(told.turned(values))
         return values, None if mask is None else np.ascontiguousarray(told.turned(mask))
+
+    def _beside_pads(
+        self, shape: tuple[int, ...], own: tuple[float, float] | None
+    ) -> tuple[float, float] | None:
+        """Return the file's pitch, or that of a told pad; note pads that it cannot be of."""
+        rows, columns = shape
+        known = self.told.pitch_cm or (own[::-1] if own and self.told.transpose else own)
+        for pad in self.told.pads:
+            if known is None and (pitch := pad.pitch_of((rows, columns))) is not None:
+                whose = f"that of {pad.name}, {pitch:g} cm"
+                self._once(f"recordings whose pitch is assumed to be {whose}")
+                own = known = pitch, pitch
+            if misfit := pad.misfit((rows, columns), known):
+                self._once(f"recordings whose {misfit}")
+        return own
 
     def _pitch(self, own: tuple[float, float] | None) -> tuple[float, float]:
         pitch = self.told.pitch_cm or own

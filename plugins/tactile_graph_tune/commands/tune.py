@@ -21,6 +21,7 @@ from tactile_graph.cli.many.options import place_asked, side_by_side, workers_op
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 from tactile_graph.cli.targets import check_targets
+from tactile_graph.cli.told_pads import reads_for_told_pads
 from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target
 from tactile_graph.foreign_text import visible
@@ -230,7 +231,7 @@ def _recorded(opened: Pipeline, name: str, asked: _Options) -> Iterator[Frame]:
 
     named = source_named(opened, [name], None, (), Span())
     assert named is not None
-    return opened.with_settings({}, named).frames(asked.seed)
+    return reads_for_told_pads(opened.with_settings({}, named)).frames(asked.seed)
 
 
 def _show(found: Tuned) -> None:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
-from itertools import chain
+from functools import partial
+from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +28,7 @@ from tactile_graph.cli.many.options import Workers
 from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.plot import IN_A_STRIP, Plot, check_plot, plot_of
 from tactile_graph.cli.targets import check_targets
-from tactile_graph.errors import DataError, UsageError
+from tactile_graph.errors import DataError, RuleError, UsageError, one_of
 from tactile_graph.files import is_plain
 from tactile_graph.plugins.registry import installed
 
@@ -49,7 +51,8 @@ STALLED_S = 1.0
     "span",
     callback=parse_span,
     metavar="N|A:B",
-    help="Only the first N frames, or frames A up to B, counted from 0. A source that makes its "
+    help="Only the first N frames, or frames A up to B, counted from 0: those that a run of all "
+    "gives, for steps that keep state see the frames before A first. A source that makes its "
     "frames makes as many.",
 )
 @click.option(
@@ -275,7 +278,7 @@ class _Run:
         if in_blocks and self.span.is_all:
             frames = self.pipeline.frames_in_stacks(self.seed, self.report)
         else:
-            frames = self._decided(self.span.of(self.pipeline.frames(self.seed, self.report)))
+            frames = self._decided(self._led(self.pipeline.frames(self.seed, self.report)))
         first = next(frames, None)
         if first is None:
             return
@@ -287,6 +290,28 @@ class _Run:
             yield from self.pipeline.blocks(given, self.runner)
         else:
             yield from self.pipeline.results(flat(given), self.runner)
+
+    def _led(self, frames: Iterator[Frame]) -> Iterator[Frame]:
+        """Return the frames asked for; steps that keep state have seen those before them."""
+        from tactile_graph.compiled import warm_up
+        from tactile_graph.engine.blocks.gathering import is_long
+
+        plan, start = self.runner.plan, self.span.start
+        keeping = plan.keeping
+        if not start or not keeping or self.decisions is not None:  # of others no state has seen
+            return self.span.of(frames)
+        say = partial(self.stderr.print, style="yellow", soft_wrap=True)
+        sinks = [i.name for i in plan.nodes if i.node is not None and i.node.is_sink]
+        if sinks:  # they would write what is not asked for
+            say(f"state begins anew at frame {start} ({one_of(keeping)}): {sinks[0]} writes frames")
+            return self.span.of(frames)
+        say(f"frames before {start} are run first, for state kept by {one_of(keeping)}")
+        if is_long(start):
+            warm_up()
+        for frame in islice(frames, start):
+            with suppress(RuleError):  # of another recording, as those of another pad
+                self.runner(frame)
+        return islice(frames, self.span.most)
 
     def _decided(self, frames: Iterator[Frame]) -> Iterator[Frame]:
         """Return the frames that were decided about, if that is asked for."""

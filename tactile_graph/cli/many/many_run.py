@@ -71,7 +71,11 @@ def division_for(asked: Asked) -> tuple[Division, Ranges | None]:
     why_not = ""
     if asked.output.exporter.joined is None:
         why_not = f"parts of {asked.output.exporter.called} files cannot be joined"
-    return (Division({}, why_not=why_not) if why_not else division_of(plan, ranges)), ranges
+    division = Division({}, why_not=why_not) if why_not else division_of(plan, ranges)
+    if division.by_recording and asked.span.start:
+        why_not = f"steps keep state, and frames before {asked.span.start} are run first"
+        division = Division({}, why_not=why_not)
+    return division, ranges
 
 
 @dataclass
@@ -102,8 +106,9 @@ class ManyRun:
         span = (asked.span.start, asked.span.stop)
         in_stacks = asked.pipeline.runner(asked.only, asked.seed).in_blocks
         self.feed = Feed(
-            asked.pipeline, asked.seed, self.report, span, self.division, self.ranges, in_stacks
-        )
+            asked.pipeline, asked.seed, self.report, span, self.division, self.ranges, in_stacks,
+            is_led=True,
+        )  # fmt: skip
         self.columns = columns_of(asked.pipeline, asked.outputs)
         self.tally = Tally(self.columns)
         self.people, self.stderr = console(stderr=True), console(stderr=True)

@@ -141,6 +141,18 @@ def test_few_readings_are_told_where_they_make_shares_and_strangers_a_guess(reco
 
 
 @pytest.mark.slow
+def test_what_is_named_right_without_its_recording_is_told(recordings):
+    run("learn", "small", recordings["small"])
+    told = run("learn", "large", recordings["large"])[2]
+    assert "of one recording: large, small; if its frames are of one press, what is named" in told
+    assert "of their recording are left out" not in told
+    shutil.copy(recordings["small"], "again.npz")
+    told = run("learn", "large", "again.npz")[2]  # without one, large is what the other is
+    assert "0.0 % of 24 readings are named right when all of their recording are left out" in told
+    assert "of one recording: small; " in told
+
+
+@pytest.mark.slow
 def test_recordings_are_identified_frame_by_frame_and_strangers_are_unknown(recordings):
     learned(recordings)
     code, text = answer("identify", recordings["large"], recordings["strange"], "--frames", "11:14")

@@ -45,6 +45,27 @@ def test_loads_on_a_pad_that_truly_reads_nothing_are_reached():
     assert noise_level(image_of(values)) == pytest.approx(0.03 * values.max())
 
 
+@pytest.mark.parametrize("size", [0.95, 1.0, 1.02, 1.05, 1.2])
+def test_lines_beside_a_large_load_are_untouched_not_dead(size):
+    y, x = np.mgrid[:64, :27]
+    hump = np.clip(size - np.hypot((y - 32) / 26, (x - 13) / 11), 0.0, None)
+    values = np.round(60.0 * hump)
+    assert noise_level(image_of(values)) == pytest.approx(0.03 * values.max())
+
+
+@pytest.mark.parametrize("load", [0.0, 30.0])
+@pytest.mark.parametrize("middle", [1.0, 1.5, 2.0])
+def test_dead_lines_say_nothing_of_noise_that_is_cut_off_at_what_they_read(middle, load):
+    rng = np.random.default_rng(8)
+    for _ in range(8):
+        noise = np.maximum(np.round(rng.normal(middle, 1.0, (40, 30))), 0.0)
+        values = noise.copy()
+        values[5:20, 10:25] += load
+        values[[2, 9, 30, 31], :] = 0.0
+        values[:, [0, 12, 20]] = 0.0
+        assert noise_level(image_of(values)) > noise.max()
+
+
 @pytest.mark.parametrize("shape", [(1, 5), (2, 4), (3, 3), (1, 16), (4, 6), (6, 6), (6, 8), (8, 8)])
 def test_an_empty_pad_of_few_cells_is_as_seldom_reached_as_one_of_more(shape):
     rng = np.random.default_rng(4)

@@ -95,6 +95,15 @@ def test_a_table_and_back_with_what_it_cannot_say_told(tmp_path: Path, made: lis
 
 
 @pytest.mark.slow
+def test_a_table_of_three_decimals_or_none_is_read_again(tmp_path: Path) -> None:
+    values = np.where(np.arange(120).reshape(20, 2, 3) % 2, 11.667, 10.0)
+    frames = [Frame.of(v, 0.5, index=i, time_s=float(i)) for i, v in enumerate(values)]
+    write_npz(tmp_path / "a.npz", frames)
+    run(tmp_path / "a.npz", tmp_path / "a.csv")
+    again = recording(path=tmp_path / "a.csv", report=Report())
+    np.testing.assert_array_equal([f.image.values for f in again], values)
+
+
 @pytest.mark.parametrize("error", [KeyboardInterrupt(), OSError(28, "No space left on device")])
 def test_a_store_whose_writing_was_cut_short_is_not_there(
     tmp_path: Path, made: list[Frame], monkeypatch: pytest.MonkeyPatch, error: BaseException

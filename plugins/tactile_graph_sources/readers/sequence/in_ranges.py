@@ -40,7 +40,7 @@ BEFORE = max(NEIGHBOURS, RECENT) + 2
 BEHIND = NEIGHBOURS + 1
 TOLD = (
     "rows", "columns", "pitch_cm", "origin_cm", "quantity", "sensor", "order", "transpose", "flip",
-    "skip",
+    "skip", "pad",
 )  # fmt: skip
 """Settings that change frames one by one, or how many are left out in front."""
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from itertools import zip_longest
 
-from tactile_graph_sources.readers.tables.table import is_comment
+from tactile_graph_sources.readers.tables.table import OWN, is_comment
 from tactile_graph_sources.readers.words.dialect import Dialect, is_row, unquoted
 from tactile_graph_sources.readers.words.moments import clock_s
 
@@ -45,7 +45,7 @@ def doubt_about(lines: Sequence[str], dialect: Dialect) -> str:
         next((told for line in first if (told := _of_line(line, dialect))), "")
         or _of_commas(rows := [line for line in first if is_row(line)], dialect)
         or _of_places([x for x in first if x.strip() and not is_comment(x)][:2], dialect)
-        or _of_thousands(rows, dialect)
+        or ("" if any(map(OWN.match, first)) else _of_thousands(rows, dialect))
     )  # fmt: skip
 
 
@@ -122,6 +122,9 @@ def _of_thousands(rows: Sequence[str], dialect: Dialect) -> str:
     if len(doubtful) < _FEWEST_PAIRS or len(doubtful) < len(found):
         return ""
     one = next(filter(_SET_APART.fullmatch, doubtful[0]))
+    decimals = re.compile(rf"[-+]?\d+[{'.' if '.' in one else ','}](?!\d{{3}}$)\d+")
+    if any(decimals.fullmatch(field) for line in fields for field in line):
+        return ""  # the same mark stands before what are surely decimals
     return (
         f"{one!r} may be {one.replace(',', '.')} or {re.sub('[.,]', '', one)}, as numbers below "
         "1000 are whole ones; write numbers without marks between thousands"

@@ -44,6 +44,11 @@ _BLANK = re.compile(r"[\s,;|]*|\s*[-=*_~]{3,}\s*|[\s|]*:?-{3,}[\s|:-]*")
 _COMMENT = ("#", "%", "//")
 _FIELD = re.compile(r"[^\s,;|]+")
 _LONGEST_NUMBER = 24
+OWN = re.compile(
+    r"# (\d{1,7}) rows, (\d{1,7}) columns, pitch \((\S+), (\S+)\) cm, "
+    r"(?:origin \((\S+), (\S+)\) cm, )?(\w+); cells row by row"
+)
+"""The comment that a table begins with which the project wrote."""
 _LOOKED_AT, _SAMPLED = 4000, 400
 MOST_DAMAGED = 0.1
 """Share of the first rows that may hold what is no number where others hold one."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -18,17 +17,11 @@ from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables import labview
 from tactile_graph_sources.readers.tables.layout import Layout, of_sensor, refuse_other_unit
-from tactile_graph_sources.readers.tables.table import is_blank, is_comment
+from tactile_graph_sources.readers.tables.table import OWN, is_blank, is_comment
 from tactile_graph_sources.readers.text.stamps import Stamps
 from tactile_graph_sources.readers.words.dialect import floats, is_row, refuse_underscore
 from tactile_graph_sources.readers.words.own_number import number_text
 from tactile_graph_sources.readers.words.told import Told
-
-_OWN = re.compile(
-    r"# (\d{1,7}) rows, (\d{1,7}) columns, pitch \((\S+), (\S+)\) cm, "
-    r"(?:origin \((\S+), (\S+)\) cm, )?(\w+); cells row by row"
-)
-"""The comment that a table begins with which the project wrote."""
 
 
 class _Lines(NamedTuple):
@@ -92,7 +85,7 @@ def _picker(cells: tuple[int, ...]) -> Callable[[list[str]], Sequence[str]]:
 
 def _own_word(head: Head, n_values: int) -> Told:
     """Return what a table of the project's own says of itself; of any other, nothing."""
-    found = _OWN.fullmatch(head.lines[0].strip()) if head.lines else None
+    found = OWN.fullmatch(head.lines[0].strip()) if head.lines else None
     if found is None:
         return Told()
     rows, columns, quantity = int(found[1]), int(found[2]), found[7]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
@@ -14,6 +14,9 @@ from tactile_graph.errors import DataError
 from tactile_graph.foreign_text import pasted
 from tactile_graph.pipeline.document import is_plain
 from tactile_graph_sources.readers.words.names import NOTHING_TOLD, ColumnsTold
+
+if TYPE_CHECKING:
+    from tactile_graph_pads.told_grid import ToldGrid
 
 _LIKELY = re.compile(
     r"(\d+) x (\d+)(?: cells)?(?=, as (?:they lie\)|cells lie together))|could be (\d+) x (\d+)"
@@ -37,7 +40,7 @@ class Told:
 
     ``order``, ``transpose`` and ``flip`` say how a frame's cells are turned once they are read,
     ``skip`` how many frames are left out in front, ``first_cell`` the number of the first row and
-    column where a table numbers them.
+    column where a table numbers them, ``pads`` what pad files say of their grids.
     """
 
     rows: int | None = None
@@ -52,13 +55,25 @@ class Told:
     flip: str = ""
     skip: int = 0
     first_cell: int | None = None
+    pads: tuple[ToldGrid, ...] = ()
 
     @classmethod
     def of(cls, columns_told: ColumnsTold = NOTHING_TOLD, **settings: Any) -> Told:
-        """Return what settings say, by their names; a pitch may be one number."""
+        """Return what settings say, by their names; a pitch may be one number.
+
+        Raises
+        ------
+        UsageError, RecordError
+            If there is no such pad, or its file is wrong.
+        """
         pitch = settings.get("pitch_cm")
         if isinstance(pitch, int | float):
             settings["pitch_cm"] = (float(pitch), float(pitch))
+        if (pad := settings.pop("pad", None)) is not None:
+            from tactile_graph_pads.told_grid import told_grid
+
+            one = isinstance(pad, str | Mapping)
+            settings["pads"] = tuple(told_grid(p) for p in ([pad] if one else pad))
         return cls(of_columns=columns_told, **settings)
 
     @property

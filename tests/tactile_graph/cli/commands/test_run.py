@@ -22,7 +22,7 @@ import pytest
 from rich.console import Console
 
 from helpers_cli import DISCS, broken_plugin, call, install
-from tactile_graph import Frame, Mask, load
+from tactile_graph import Frame, Image, Mask, load
 from tactile_graph.cli.output.live_table import LiveTable
 from tactile_graph.engine.tables.columns import Column, columns_of
 
@@ -273,6 +273,31 @@ def test_an_output_file_has_its_provenance_beside_it(tmp_path):
 def test_frames_are_chosen_by_count(span, expected):
     got = call("run", "loads", "--source", "made", "--frames", span, "-o", "-")
     assert [f["frame"] for f in lines(got.stdout)] == expected
+
+
+class Counting:
+    """How many frames it ran on."""
+
+    def __init__(self) -> None:
+        self.n = 0
+
+    def __call__(self, image: Image) -> int:
+        self.n += 1
+        return self.n
+
+
+COUNTING = "pipeline: counting\nnodes:\n  n: {step: counting, in: frame}\noutputs: [n]\n"
+
+
+def test_steps_that_keep_state_see_the_frames_before_a_part(tmp_path, monkeypatch):
+    install(monkeypatch, tmp_path, steps={"counting": Counting})
+    Path("counting.yaml").write_text(COUNTING)
+    got = call("run", "counting.yaml", "--source", "made", "--frames", "2:", "-o", "-")
+    assert "frames before 2 are run first, for state kept by n\n" in got.stderr
+    rows = lines(got.stdout)
+    assert [(row["frame"], row["outputs"]["n"]) for row in rows] == [(2, 3), (3, 4)]
+    got = call("run", "loads", "--source", "made", "--frames", "2:", "-o", "-")
+    assert "run first" not in got.stderr
 
 
 def test_a_source_that_makes_its_frames_is_asked_for_as_many():

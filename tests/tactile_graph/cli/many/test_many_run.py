@@ -192,6 +192,17 @@ def test_state_that_ends_reaches_back_to_no_recording_before(folder: Path) -> No
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("name", ["lately", "endless"])
+def test_a_part_has_the_state_that_all_frames_before_it_left(folder: Path, name: str) -> None:
+    words = (f"{name}.yaml", "a.zarr", "b.zarr")
+    whole = written(folder, "p1.csv", *words)[0].splitlines()
+    for more in ((), ("--workers", "2")):
+        part, said = written(folder, "p2.csv", *words, "--frames", "400:900", *more)
+        assert part.splitlines() == [whole[0], *whole[401:901]]
+        assert not more or ("in one process" in said) == (name == "endless")
+
+
+@pytest.mark.slow
 def test_state_and_garbage_go_in_one_process_and_are_told(folder: Path) -> None:
     """Where frames are left out, those behind have other places, and so has what is remembered."""
     words = ("lately.yaml", "garbage.npz")
