@@ -150,6 +150,7 @@ def test_a_handler_that_a_plugin_sets_stays() -> None:
 def test_an_import_that_hangs_is_told_by_name(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    assert module.SLOW_S == 5.0
     monkeypatch.setattr(module, "SLOW_S", 0.05)
     with foreign_code("slow", "plugin 'slow' (package p)"):
         time.sleep(0.3)
