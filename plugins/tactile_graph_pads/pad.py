@@ -226,13 +226,17 @@ def load_pad(pad: str | Path | Mapping[str, Any]) -> Pad:
     """
     if isinstance(pad, Mapping):
         return read_record(inline(pad, "pad"), Pad, "a pad")
-    path = Path(pad)
-    if path.suffix not in (".yaml", ".yml"):
-        path = installed().path("pads", str(pad))
+    path = path_of(pad)
     found = read_record(read_file(path, "pad"), Pad, "a pad")
     if found.learned is None:
         return found
     return replace(found, learned=found.learned.beside(path.parent))
+
+
+def path_of(pad: str | Path) -> Path:
+    """Return the file of a pad; errors as of `load_pad`, if there is no such pad."""
+    path = Path(pad)
+    return path if path.suffix in (".yaml", ".yml") else installed().path("pads", str(pad))
 
 
 def learned_of(pad: str | Path | Mapping[str, Any]) -> Learned:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tactile_graph.plugins.registry import installed
-from tactile_graph_pads.pad import load_pad, read_file
+from tactile_graph_pads.pad import Pad, path_of, read_file
+from tactile_graph_pads.records import inline, read_record
 
 CLOSE = 0.01
 """Share by which a pitch may differ from another and still be the same in round numbers."""
@@ -62,21 +62,18 @@ def told_grid(pad: str | Path | Mapping[str, Any]) -> ToldGrid:
     Parameters
     ----------
     pad : str, Path or mapping
-        As `load_pad` takes it.
+        As `pad.load_pad` takes it.
 
     Raises
     ------
     UsageError, RecordError
-        As `load_pad` does.
+        As `pad.load_pad` does.
     """
-    geometry = load_pad(pad).geometry
     if isinstance(pad, Mapping):
-        name, data = "the told pad", pad
+        name, document = "the told pad", inline(pad, "pad")
     else:
-        is_file = Path(pad).suffix in (".yaml", ".yml")
-        path = Path(pad) if is_file else installed().path("pads", str(pad))
-        name, data = f"pad {pad}", read_file(path, "pad").data
-    said = data.get("geometry", {})
+        name, document = f"pad {pad}", read_file(path_of(pad), "pad")
+    geometry, said = read_record(document, Pad, "a pad").geometry, document.data.get("geometry", {})
     return ToldGrid(
         name,
         geometry.shape if {"rows", "columns"} <= said.keys() else None,
