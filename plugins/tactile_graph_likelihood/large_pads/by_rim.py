@@ -41,6 +41,7 @@ from tactile_graph_likelihood.single.information import (
     add_outer,
     add_score,
     mirror,
+    number_of_contrast,
     scatter_of,
     score_of,
     steps_of,
@@ -128,10 +129,7 @@ def information_by_rim(problem: Problem, whole: CoveredWhole, p: Values, out: In
     share, rise = _rises_on_rim(problem, p, box, runs)
     its, on_rim = elements_of(whole, load, noise[SIGMA], box, runs), share.shape[0]
     scatter, total, along = scatter_of(noise), NO_SCORE, np.zeros(p.shape[0])
-    power, by_power = noise[CONTRAST], -1
-    for k in range(problem.estimated.shape[0]):
-        if problem.estimated[k] == CONTRAST:
-            by_power = first + 1 + k
+    power, by_power = noise[CONTRAST], number_of_contrast(problem)
     along[first], sliver = 1.0, SLIVER ** (1.0 / power)
     for k in range(its.rows.shape[0]):
         row, column, part = its.rows[k], its.columns[k], share[k] if k < on_rim else 1.0

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
-from tactile_graph_likelihood.several.partings import OWN, SAME_CUT, sketch_of
+from tactile_graph_likelihood.several.partings import OWN, SAME_CUT, count_in, sketch_of
 from tactile_graph_likelihood.several.sketch import settle_sketches
 from tactile_graph_likelihood.single.problem import Places
 
@@ -166,14 +166,7 @@ def sum_up(at: Values, log: Values, own: Places, sums: Values) -> None:
     """Write the sums over each cluster's elements, as `spread` has them."""
     sums[:, :] = 0.0
     for i in range(at.shape[0]):
-        a, x, y = sums[own[i]], at[i, 0], at[i, 1]
-        a[0] += 1.0
-        a[1] += x
-        a[2] += y
-        a[3] += x * x
-        a[4] += x * y
-        a[5] += y * y
-        a[6] += log[i]
+        count_in(sums[own[i]], at[i, 0], at[i, 1], log[i])
 
 
 @compiled_as_is

@@ -64,15 +64,20 @@ def sketch_of_mask(
     for i in range(mask.shape[0]):
         for j in range(mask.shape[1]):
             if mask[i, j]:
-                x, y = float(j), float(i)
-                sums[0] += 1.0
-                sums[1] += x
-                sums[2] += y
-                sums[3] += x * x
-                sums[4] += x * y
-                sums[5] += y * y
-                sums[6] += logs[i, j]
+                count_in(sums, float(j), float(i), logs[i, j])
     sketch_of(sums, grid, points[0])
+
+
+@compiled_as_is
+def count_in(sums: Values, x: float, y: float, log: float) -> None:
+    """Add an element at a column and row, of a log load, to sums as `spread` has them."""
+    sums[0] += 1.0
+    sums[1] += x
+    sums[2] += y
+    sums[3] += x * x
+    sums[4] += x * y
+    sums[5] += y * y
+    sums[6] += log
 
 
 class Across(NamedTuple):

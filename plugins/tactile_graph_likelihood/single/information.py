@@ -147,6 +147,15 @@ def summed(total: Score, more: Score, times: float) -> Score:
 
 
 @compiled_as_is
+def number_of_contrast(problem: Problem) -> int:
+    """Return which of a point's numbers is the contrast, -1 where none is."""
+    for k in range(problem.estimated.shape[0]):
+        if problem.estimated[k] == CONTRAST:
+            return unknowns(problem.kind, problem.corners) + 1 + k
+    return -1
+
+
+@compiled_as_is
 def add_score(problem: Problem, score: Score, out: Information) -> None:
     """Add what readings say of the load, where nothing else moves it, and of their scatter."""
     first, estimated = unknowns(problem.kind, problem.corners), problem.estimated
@@ -288,12 +297,10 @@ def information(problem: Problem, p: Values, out: Information) -> float:
     if box[2] <= 0 or box[3] <= 0:
         return 0.0
     row, column, load, own = box[0], box[1], p[first], noise[LEAST]
-    power, by_power, moving = noise[CONTRAST], -1, first + 1
+    power, by_power, moving = noise[CONTRAST], number_of_contrast(problem), first + 1
     for k in range(problem.estimated.shape[0]):
         if problem.estimated[k] not in (SIGMA, VOIDS):
             moving = first + 2 + k
-        if problem.estimated[k] == CONTRAST:
-            by_power = first + 1 + k
     share, rise = _rises(problem, p, noise, box, moving)
     scatter, total, along = scatter_of(noise), NO_SCORE, np.zeros(moving)
     sliver, unfelt, odds, found = SLIVER ** (1.0 / power), UNFELT * scatter.sigma, 1.0, 0.0
