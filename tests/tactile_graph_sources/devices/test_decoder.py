@@ -358,13 +358,18 @@ def test_a_header_in_the_data_from_the_start_makes_frames_doubtful() -> None:
     assert all(np.array_equal(d.values, clean) for d in sure)
 
 
-def test_values_out_of_range_never_go_on() -> None:
-    kit = BY_NAME["fabric-16x16"]
+def with_one_out_of_range(kit: Kit) -> list[bytes]:
+    """Return four frames, of which the second reads more than there is."""
     pads = pads_of(kit, 4)
     pads[1] = pads[1].copy()
     pads[1][3, 3] = 5000
+    return [kit.encode(p, i) for i, p in enumerate(pads)]
+
+
+def test_values_out_of_range_never_go_on() -> None:
+    kit = BY_NAME["fabric-16x16"]
     decoder = decoder_of(kit)
-    got = send(decoder, kit, [kit.encode(p, i) for i, p in enumerate(pads)])
+    got = send(decoder, kit, with_one_out_of_range(kit))
     assert [d.gap for d in got] == [False, True, False]
     assert decoder.counts.bad["out of range"] == 1
     assert "5000" in decoder.hint()
@@ -372,12 +377,9 @@ def test_values_out_of_range_never_go_on() -> None:
 
 def test_the_frame_after_one_out_of_range_says_so_in_a_chunk_of_its_own() -> None:
     kit = BY_NAME["fabric-16x16"]
-    pads = pads_of(kit, 4)
-    pads[1] = pads[1].copy()
-    pads[1][3, 3] = 5000
     decoder = decoder_of(kit)
-    chunks_of_one = [kit.encode(p, i) for i, p in enumerate(pads)]
-    got = [d for chunk in [kit.lead_in, *chunks_of_one] for d in decoder.feed(chunk)]
+    sent = [kit.lead_in, *with_one_out_of_range(kit)]
+    got = [d for chunk in sent for d in decoder.feed(chunk)]
     assert [d.gap for d in [*got, *decoder.boundary()]] == [False, True, False]
 
 
