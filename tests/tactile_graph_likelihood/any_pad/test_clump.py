@@ -5,7 +5,8 @@ import pytest
 
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.clump import clump_of, is_in_parts
-from tactile_graph_likelihood.any_pad.locate import LocateDisc
+from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse
+from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
 
@@ -49,15 +50,16 @@ def test_two_contacts_are_parts_and_neither_strays_nor_a_dead_row_make_any():
 
 
 @pytest.mark.slow
-def test_a_disc_over_two_contacts_does_not_fit():
+def test_an_ellipse_over_two_contacts_does_not_fit():
     rng, values = np.random.default_rng(3), np.zeros((16, 16))
-    values[3:7, 4:8] = values[10:14, 6:10] = 60.0
+    values[2:6, 5:9] = values[9:13, 5:9] = 60.0
     image = Image(values * np.exp(0.2 * rng.standard_normal(values.shape)), (1.3, 1.3))
-    found = LocateDisc()(image).posterior
+    found = LocateEllipse()(image).posterior
     assert found.in_parts
     assert not found.fits
-    values[10:14, 6:10] = 0.0
-    one = LocateDisc()(image.with_values(np.where(values > 0.0, image.values, 0.0))).posterior
+    assert changed(found, in_parts=False).fits, "nothing else tells it"
+    values[9:13, 5:9] = 0.0
+    one = LocateEllipse()(image.with_values(np.where(values > 0.0, image.values, 0.0))).posterior
     assert not one.in_parts
     assert one.fits
 

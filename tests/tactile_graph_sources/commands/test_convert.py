@@ -95,9 +95,13 @@ def test_a_table_and_back_with_what_it_cannot_say_told(tmp_path: Path, made: lis
 
 
 @pytest.mark.slow
-def test_a_table_of_three_decimals_or_none_is_read_again(tmp_path: Path) -> None:
+@pytest.mark.parametrize("step_s", [1.0, None])
+def test_a_table_of_three_decimals_or_none_is_read_again(
+    tmp_path: Path, step_s: float | None
+) -> None:
     values = np.where(np.arange(120).reshape(20, 2, 3) % 2, 11.667, 10.0)
-    frames = [Frame.of(v, 0.5, index=i, time_s=float(i)) for i, v in enumerate(values)]
+    times_s = [None if step_s is None else step_s * i for i in range(len(values))]
+    frames = [Frame.of(v, 0.5, index=i, time_s=times_s[i]) for i, v in enumerate(values)]
     write_npz(tmp_path / "a.npz", frames)
     run(tmp_path / "a.npz", tmp_path / "a.csv")
     again = recording(path=tmp_path / "a.csv", report=Report())
