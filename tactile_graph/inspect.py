@@ -35,10 +35,10 @@ from tactile_graph.engine.runner import Runner, check_frame
 from tactile_graph.engine.tables.rows import as_data, scalars, without_nan
 from tactile_graph.engine.tables.table import Table, make_table
 from tactile_graph.engine.tables.truth import measures_of, shape_kind
-from tactile_graph.pipeline.conditions import Guard, one_line
+from tactile_graph.pipeline.conditions.conditions import Guard, one_line
 from tactile_graph.pipeline.graph import FRAME, Graph, Node, NodeKind, Source, node_key
 from tactile_graph.pipeline.idle import idle_settings
-from tactile_graph.pipeline.moved import moved, named_from
+from tactile_graph.pipeline.named_files.moved import moved, named_from
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.wiring import Ref, arms, field_type, public_fields
 

@@ -19,8 +19,8 @@ from tactile_graph.errors import PipelineError, Problem, UsageError, one_of, sho
 from tactile_graph.pipeline.files_read import FilesRead
 from tactile_graph.pipeline.graph import FRAME, Graph
 from tactile_graph.pipeline.load import load_graph, parse_again, parse_graph, resolve_again
-from tactile_graph.pipeline.resolve import SourceOverride
-from tactile_graph.pipeline.scope import Overrides
+from tactile_graph.pipeline.resolution.resolve import SourceOverride
+from tactile_graph.pipeline.resolution.scope import Overrides
 from tactile_graph.plugins.registry import Registry, installed, installed_and
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame

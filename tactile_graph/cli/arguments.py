@@ -23,7 +23,7 @@ from tactile_graph.cli.completions import (
 )
 from tactile_graph.cli.told_pads import reads_for_told_pads
 from tactile_graph.errors import UsageError
-from tactile_graph.pipeline.named_files import is_there
+from tactile_graph.pipeline.named_files.named_files import is_there
 from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ import click
 from tactile_graph.cli import endings, shared
 from tactile_graph.cli.say import say
 from tactile_graph.errors import TactileGraphError, did_you_mean, one_of
-from tactile_graph.pipeline.named_files import is_there
+from tactile_graph.pipeline.named_files.named_files import is_there
 from tactile_graph.plugins import registry
 
 LEAST_ALIKE = 0.75

@@ -12,7 +12,7 @@ import click
 
 from tactile_graph.errors import UsageError
 from tactile_graph.files import Name, is_plain
-from tactile_graph.pipeline.named_files import is_kept, named_by_settings, paths_in
+from tactile_graph.pipeline.named_files.named_files import is_kept, named_by_settings, paths_in
 
 if TYPE_CHECKING:
     from tactile_graph.pipeline.graph import Graph

@@ -23,7 +23,7 @@ from tactile_graph.compiled.chained import Chained
 from tactile_graph.compiled.kernel import compiled_later
 from tactile_graph.engine.operations.step_operation import Operation, State
 from tactile_graph.engine.plan import Item, Plan
-from tactile_graph.pipeline.conditions import Guard, reckons
+from tactile_graph.pipeline.conditions.conditions import Guard, reckons
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.steps.linked import Linked
 from tactile_graph.steps.signature import Signature

@@ -30,7 +30,7 @@ from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed, Skipped, fai
 from tactile_graph.engine.plan import Item, Plan
 from tactile_graph.engine.written import AFTER_FRAMES, CHAINS_AFTER_FRAMES, Written
 from tactile_graph.errors import Degenerate, RuleError
-from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.conditions.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import Ref
 

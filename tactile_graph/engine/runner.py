@@ -26,9 +26,9 @@ from tactile_graph.engine.outcomes.outcomes import INNER, ITEM_FAILURES, Outcome
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.program import make_program
 from tactile_graph.errors import Degenerate, RuleError, UsageError
-from tactile_graph.pipeline.facts import quantity_trouble
 from tactile_graph.pipeline.graph import FrameRule, Graph, Isolation, Node
-from tactile_graph.pipeline.made_of import MadeOf, made_of
+from tactile_graph.pipeline.named_files.made_of import MadeOf, made_of
+from tactile_graph.pipeline.resolution.facts import quantity_trouble
 from tactile_graph.shared_process import (
     errors_of_numpy,
     go_away,

@@ -34,7 +34,7 @@ from tactile_graph.engine.outcomes.outcome import (
 )
 from tactile_graph.engine.outcomes.outcomes import LATER
 from tactile_graph.engine.plan import Input, Item, Plan
-from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.conditions.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 
 AFTER_FRAMES = 200

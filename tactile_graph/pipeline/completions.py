@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from tactile_graph.errors import PipelineError, TactileGraphError
-from tactile_graph.pipeline.comparable import is_scalar
+from tactile_graph.pipeline.conditions.comparable import is_scalar
 from tactile_graph.pipeline.declaration import Declaration, declare
 from tactile_graph.pipeline.document import read_document
 from tactile_graph.pipeline.graph import FRAME

@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Any
 
 from tactile_graph.errors import Mark, UsageError
-from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.conditions.conditions import Guard
 from tactile_graph.pipeline.files_read import FilesRead
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.references import ConditionError, resolve_reference

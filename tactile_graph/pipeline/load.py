@@ -14,8 +14,8 @@ from tactile_graph.pipeline.declaration import declare
 from tactile_graph.pipeline.document import Document, read_document, text_of_file
 from tactile_graph.pipeline.files_read import FilesRead, Used
 from tactile_graph.pipeline.graph import Graph
-from tactile_graph.pipeline.resolve import SourceOverride, resolve
-from tactile_graph.pipeline.scope import Overrides, Scope
+from tactile_graph.pipeline.resolution.resolve import SourceOverride, resolve
+from tactile_graph.pipeline.resolution.scope import Overrides, Scope
 from tactile_graph.plugins.registry import Registry, installed
 
 MOST_LEVELS = 50

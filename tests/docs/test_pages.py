@@ -23,7 +23,7 @@ from helpers_learning import MadeUpPad, untold
 from tactile_graph import Circle, load, loads
 from tactile_graph.cli import cli
 from tactile_graph.errors import DataError, PipelineError
-from tactile_graph.pipeline.conditions import FUNCTIONS
+from tactile_graph.pipeline.conditions.conditions import FUNCTIONS
 from tactile_graph.pipeline.declaration import NODE_KEYS, TOP_KEYS
 from tactile_graph.plugins.core import tactile_graph_quantities
 from tactile_graph.plugins.registry import installed

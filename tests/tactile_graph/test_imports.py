@@ -169,7 +169,9 @@ def test_no_rooms_of_the_core_import_each_other_in_a_circle() -> None:
     assert circles(nx.DiGraph((room(a), room(b)) for a, b in core)) == []
 
 
-@pytest.mark.parametrize("package", ["tactile_graph.engine", "tactile_graph_sources.readers"])
+@pytest.mark.parametrize(
+    "package", ["tactile_graph.engine", "tactile_graph.pipeline", "tactile_graph_sources.readers"]
+)
 def test_no_rooms_within_a_large_room_import_each_other_in_a_circle(package: str) -> None:
     inside = import_graph().subgraph([m for m in modules() if m.startswith(f"{package}.")])
     between = nx.DiGraph((room(a, package), room(b, package)) for a, b in inside.edges)

@@ -12,7 +12,7 @@ from typing import Any
 
 from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.pipeline.graph import Graph
-from tactile_graph.pipeline.named_files import (
+from tactile_graph.pipeline.named_files.named_files import (
     content_of,
     is_kept,
     is_there,

@@ -18,7 +18,7 @@ import numpy as np
 from tactile_graph.engine.operations.freeze import freeze
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, Skipped
 from tactile_graph.errors import PluginError
-from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.conditions.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.steps.signature import Signature
 from tactile_graph.wires.stacks import Answered, Column, Listed, Rows, Stack, field_of

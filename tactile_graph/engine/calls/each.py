@@ -25,8 +25,8 @@ from tactile_graph.engine.outcomes.outcome import (
 )
 from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.engine.plan import OF_ITEM
-from tactile_graph.pipeline.embed import MASK
 from tactile_graph.pipeline.graph import FRAME, Binding, Node, NodeKind
+from tactile_graph.pipeline.resolution.embed import MASK
 from tactile_graph.pipeline.wiring import arms
 from tactile_graph.wires.frame import Frame
 

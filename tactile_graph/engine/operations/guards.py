@@ -8,7 +8,7 @@ from tactile_graph.engine.operations.freeze import IMMUTABLE
 from tactile_graph.engine.operations.step_operation import Operation, State
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed, Skipped, failure
 from tactile_graph.engine.plan import Item
-from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.conditions.conditions import Guard
 
 
 def guarded(item: Item, guard: Guard, reads: list[Operation], body: Operation) -> Operation:

@@ -19,7 +19,7 @@ from tactile_graph.engine import program, written
 from tactile_graph.engine.chains import chains_of, linked_form, spelled
 from tactile_graph.engine.outcomes.outcomes import LATER
 from tactile_graph.engine.runner import Runner
-from tactile_graph.pipeline.conditions import compile_condition
+from tactile_graph.pipeline.conditions.conditions import compile_condition
 from tactile_graph.wires import Circle, Mask
 
 INDICES = np.indices((16, 16))

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from tactile_graph import Frame, Image, loads
 from tactile_graph.errors import PipelineError
-from tactile_graph.pipeline.conditions import compile_condition, names_in
+from tactile_graph.pipeline.conditions.conditions import compile_condition, names_in
 from tactile_graph.pipeline.references import ConditionError
 from tactile_graph.pipeline.wiring import Ref
 

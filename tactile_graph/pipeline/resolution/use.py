@@ -6,9 +6,10 @@ from dataclasses import replace
 from typing import Any
 
 from tactile_graph.errors import PipelineError, Problem, TactileGraphError, did_you_mean, one_of
-from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.conditions.conditions import Guard
 from tactile_graph.pipeline.declaration import NodeDeclaration
-from tactile_graph.pipeline.embed import (
+from tactile_graph.pipeline.graph import FRAME, Graph, node_key
+from tactile_graph.pipeline.resolution.embed import (
     Embedding,
     Given,
     field_of,
@@ -17,11 +18,15 @@ from tactile_graph.pipeline.embed import (
     map_node,
     replaced_nodes,
 )
-from tactile_graph.pipeline.facts import embedded_rules, limited, ref_facts, where_reached
-from tactile_graph.pipeline.free import free_of_use
-from tactile_graph.pipeline.graph import FRAME, Graph, node_key
-from tactile_graph.pipeline.isolation import isolated_within
-from tactile_graph.pipeline.scope import Scope
+from tactile_graph.pipeline.resolution.facts import (
+    embedded_rules,
+    limited,
+    ref_facts,
+    where_reached,
+)
+from tactile_graph.pipeline.resolution.free import free_of_use
+from tactile_graph.pipeline.resolution.isolation import isolated_within
+from tactile_graph.pipeline.resolution.scope import Scope
 
 
 def resolve_use(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from tactile_graph.errors import Mark
-from tactile_graph.pipeline.conditions import Guard
-from tactile_graph.pipeline.facts import embedded_facts, frame_facts, ref_facts
+from tactile_graph.pipeline.conditions.conditions import Guard
 from tactile_graph.pipeline.graph import FRAME, Binding, Facts, Graph, Node, NodeKind
+from tactile_graph.pipeline.resolution.facts import embedded_facts, frame_facts, ref_facts
 from tactile_graph.pipeline.wiring import Ref, fit
 from tactile_graph.steps.signature import Port, list_item, type_name
 from tactile_graph.wires.frame import Frame

@@ -12,9 +12,15 @@ from typing import Any
 import numpy as np
 
 from tactile_graph.errors import one_of, shown
-from tactile_graph.pipeline.comparable import fields_hint, is_scalar
-from tactile_graph.pipeline.nonsense import FUNCTIONS, no_arithmetic, no_call, no_truth, nonsense
-from tactile_graph.pipeline.over_items import OVER_ITEMS, resolve_of_items, spelled_out
+from tactile_graph.pipeline.conditions.comparable import fields_hint, is_scalar
+from tactile_graph.pipeline.conditions.nonsense import (
+    FUNCTIONS,
+    no_arithmetic,
+    no_call,
+    no_truth,
+    nonsense,
+)
+from tactile_graph.pipeline.conditions.over_items import OVER_ITEMS, resolve_of_items, spelled_out
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
 from tactile_graph.pipeline.wiring import Ref, arms
 from tactile_graph.steps.signature import list_item, type_name

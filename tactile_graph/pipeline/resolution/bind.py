@@ -7,7 +7,7 @@ from typing import Any
 from tactile_graph.errors import did_you_mean, one_of
 from tactile_graph.pipeline.declaration import NodeDeclaration
 from tactile_graph.pipeline.graph import Binding
-from tactile_graph.pipeline.scope import Scope
+from tactile_graph.pipeline.resolution.scope import Scope
 from tactile_graph.pipeline.wiring import Ref, fit, public_fields
 from tactile_graph.steps.signature import Port, Signature, list_item, type_name
 

@@ -13,9 +13,9 @@ from helpers_graphs import registry
 from tactile_graph import Frame, Image, Pipeline, loads
 from tactile_graph.engine.outcomes.outcome import Skipped
 from tactile_graph.errors import PipelineError, RuleError
-from tactile_graph.pipeline.conditions import compile_condition
-from tactile_graph.pipeline.facts import quantity_trouble
+from tactile_graph.pipeline.conditions.conditions import compile_condition
 from tactile_graph.pipeline.graph import FrameRule
+from tactile_graph.pipeline.resolution.facts import quantity_trouble
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.steps import Quantity
 

@@ -8,7 +8,7 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 from tactile_graph.pipeline.graph import Graph, Node
-from tactile_graph.pipeline.named_files import content_of, is_kept, paths_in
+from tactile_graph.pipeline.named_files.named_files import content_of, is_kept, paths_in
 from tactile_graph.pipeline.wiring import Ref
 
 MadeOf = dict[str, tuple[Any, list[str]]]

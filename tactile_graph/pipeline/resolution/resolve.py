@@ -10,19 +10,8 @@ from numpy.random import default_rng
 
 from tactile_graph.errors import PluginError, Problem, TactileGraphError, UsageError
 from tactile_graph.files import lies_beside
-from tactile_graph.pipeline.bind import bind_inputs
-from tactile_graph.pipeline.checks import check_conditions, check_fields_read, check_overrides
-from tactile_graph.pipeline.conditions import Guard, compile_condition
+from tactile_graph.pipeline.conditions.conditions import Guard, compile_condition
 from tactile_graph.pipeline.declaration import MOST_NODES, NodeDeclaration
-from tactile_graph.pipeline.facts import (
-    choice_facts,
-    frame_facts,
-    output_facts,
-    quantity_troubles,
-    source_quantities,
-    step_troubles,
-)
-from tactile_graph.pipeline.free import free_of_step
 from tactile_graph.pipeline.graph import (
     FRAME,
     FrameRule,
@@ -32,12 +21,27 @@ from tactile_graph.pipeline.graph import (
     Source,
     node_key,
 )  # fmt: skip
-from tactile_graph.pipeline.isolation import check_isolated, isolation_of
-from tactile_graph.pipeline.order import resolvable_order
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.references import ConditionError, resolve_reference
-from tactile_graph.pipeline.scope import Scope
-from tactile_graph.pipeline.use import resolve_use
+from tactile_graph.pipeline.resolution.bind import bind_inputs
+from tactile_graph.pipeline.resolution.checks import (
+    check_conditions,
+    check_fields_read,
+    check_overrides,
+)
+from tactile_graph.pipeline.resolution.facts import (
+    choice_facts,
+    frame_facts,
+    output_facts,
+    quantity_troubles,
+    source_quantities,
+    step_troubles,
+)
+from tactile_graph.pipeline.resolution.free import free_of_step
+from tactile_graph.pipeline.resolution.isolation import check_isolated, isolation_of
+from tactile_graph.pipeline.resolution.order import resolvable_order
+from tactile_graph.pipeline.resolution.scope import Scope
+from tactile_graph.pipeline.resolution.use import resolve_use
 from tactile_graph.pipeline.wiring import UNKNOWN, Ref, common_type
 from tactile_graph.plugins.mistakes import why
 from tactile_graph.shared_process import righted

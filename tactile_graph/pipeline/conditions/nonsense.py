@@ -8,8 +8,8 @@ from itertools import pairwise
 from typing import Any, Literal, Protocol, get_args, get_origin
 
 from tactile_graph.errors import did_you_mean
-from tactile_graph.pipeline.comparable import is_scalar, sort_of
-from tactile_graph.pipeline.over_items import OVER_ITEMS
+from tactile_graph.pipeline.conditions.comparable import is_scalar, sort_of
+from tactile_graph.pipeline.conditions.over_items import OVER_ITEMS
 from tactile_graph.pipeline.wiring import arms
 from tactile_graph.steps.signature import list_item, strip
 

@@ -6,7 +6,7 @@ import heapq
 from collections.abc import Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 
-from tactile_graph.pipeline.conditions import names_in
+from tactile_graph.pipeline.conditions.conditions import names_in
 from tactile_graph.pipeline.declaration import Declaration, NodeDeclaration
 
 

@@ -14,7 +14,7 @@ from dataclasses import replace
 from tactile_graph.errors import UsageError, did_you_mean
 from tactile_graph.pipeline.declaration import NodeDeclaration
 from tactile_graph.pipeline.graph import Graph, Isolation, Node, NodeKind
-from tactile_graph.pipeline.scope import Scope
+from tactile_graph.pipeline.resolution.scope import Scope
 from tactile_graph.plugins.names import Offer
 from tactile_graph.steps.signature import Signature
 

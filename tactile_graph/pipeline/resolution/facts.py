@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.conditions.conditions import Guard
 from tactile_graph.pipeline.graph import FRAME, Binding, Facts, FrameRule, Node, Source
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.steps.rules import Grid, GridFact, Quantity

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from tactile_graph.errors import Mark
-from tactile_graph.pipeline.conditions import Guard
+from tactile_graph.pipeline.conditions.conditions import Guard
 from tactile_graph.pipeline.declaration import Declaration, NodeDeclaration
 from tactile_graph.pipeline.document import Document
 from tactile_graph.pipeline.files_read import FilesRead

@@ -6,7 +6,7 @@ from typing import Any
 
 from tactile_graph.errors import PipelineError, TactileGraphError, did_you_mean, one_of
 from tactile_graph.pipeline.declaration import NodeDeclaration
-from tactile_graph.pipeline.scope import Scope
+from tactile_graph.pipeline.resolution.scope import Scope
 from tactile_graph.steps.settings import validate_settings
 from tactile_graph.steps.signature import Signature
 

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from tactile_graph.errors import Mark, Problem, did_you_mean, one_of
-from tactile_graph.pipeline.conditions import compile_condition, without_comments
+from tactile_graph.pipeline.conditions.conditions import compile_condition, without_comments
 from tactile_graph.pipeline.document import Path, on_one_line
-from tactile_graph.pipeline.facts import ref_facts
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.pipeline.references import ConditionError
-from tactile_graph.pipeline.scope import Scope
+from tactile_graph.pipeline.resolution.facts import ref_facts
+from tactile_graph.pipeline.resolution.scope import Scope
 from tactile_graph.pipeline.wiring import Ref
 
 

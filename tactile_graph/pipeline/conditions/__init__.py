@@ -1,0 +1,1 @@
+"""Conditions of ``when``: compiled, over the items of lists, refused where they are nonsense."""

@@ -1,0 +1,1 @@
+"""A declaration becomes a graph: nodes in order, bound, checked, their facts followed."""
