@@ -55,7 +55,6 @@ from tactile_graph_likelihood.single.maximise import Mode
 from tactile_graph_likelihood.single.model import Likeliest
 from tactile_graph_likelihood.single.noise import SPREADS
 from tactile_graph_likelihood.single.posterior import Posterior
-from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings, is_row
 
 NEGLIGIBLE = 0.03
@@ -148,7 +147,7 @@ class _Around:
 
     @property
     def _is_large(self) -> bool:
-        return self.readings.states.size > LARGE_PAD
+        return self.readings.is_wide
 
     def _log_chances(self) -> dict[str, float]:
         # A pressure is told by all of a face: elements count for as much less along both axes.

@@ -16,7 +16,6 @@ from tactile_graph_likelihood.geometry.outlines import (
 )
 from tactile_graph_likelihood.single.any_pressure import EVEN
 from tactile_graph_likelihood.single.model import Likeliest
-from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
 from tactile_graph_likelihood.single.search import POOR, moments
 
@@ -61,7 +60,7 @@ def tops_of_each(
         If none is possible.
     """
     found: dict[str, Likeliest] = {}
-    if readings.states.size <= LARGE_PAD and len(every) > 1:
+    if not readings.is_wide and len(every) > 1:
         readings, every, found = _first_look(every, readings)
     best = max(found.values(), key=lambda its: its.evidence, default=None)
     tops: dict[str, Tops] = {}

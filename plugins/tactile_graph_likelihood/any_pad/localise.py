@@ -50,7 +50,6 @@ from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.element_terms import UNKNOWN
 from tactile_graph_likelihood.single.model import EVERY, MORE, SECOND, Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
-from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings
 from tactile_graph_likelihood.single.search import SAME
 
@@ -135,7 +134,7 @@ class AnyPad:
 
         They are not quick, and know of the foam that is told, since none is undone there.
         """
-        large = readings.states.size > LARGE_PAD
+        large = readings.is_wide
         return self._on_large_pads if large and (self.quick or self.foam_cm > 0.0) else self
 
     @cached_property
@@ -201,7 +200,7 @@ class AnyPad:
         attempts. Not so on pads of more than 1024 elements, nor of an outline with an angle, which
         would rather be caught there.
         """
-        model, large = self._fit(EVEN), readings.states.size > LARGE_PAD
+        model, large = self._fit(EVEN), readings.is_wide
         some = None if large or self.told.kind != DISC else without_alone(readings)
         if some is None or (rough := model.likeliest(some)).mode.height == -math.inf:
             return self, model.likeliest(readings)
@@ -217,7 +216,7 @@ class AnyPad:
         With their outline, and on elements as large as they tell. Only on pads of up to 1024
         elements.
         """
-        if readings.states.size > LARGE_PAD or even.mode.height == -math.inf:
+        if readings.is_wide or even.mode.height == -math.inf:
             return readings, even
         model = self._fit(EVEN)
         readings, even = unheld(model, readings, even)
@@ -301,7 +300,7 @@ class AnyPad:
     def again(self, readings: Readings, even: Likeliest) -> Likeliest:
         """Return what is likelier, near an outline and elsewhere, now that strays are known."""
         near, model = self.near(readings, self.told.point_of(even)), self._fit(EVEN)
-        large = readings.states.size > LARGE_PAD
+        large = readings.is_wide
         if large and not near.unsure:
             return near
         found = model.likeliest(readings, near, attempts=MORE)
@@ -324,7 +323,7 @@ class AnyPad:
         Degenerate
             If no outline of this kind is possible.
         """
-        large, model = readings.states.size > LARGE_PAD, self._fit(EVEN)
+        large, model = readings.is_wide, self._fit(EVEN)
         if not large:
             even = self.sought(readings, even)
         if readings.touched <= FEW:

@@ -23,7 +23,6 @@ from tactile_graph_likelihood.any_pad.shown import (
 )
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import OFF, ON, UNDER, UNKNOWN
-from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Gap, Readings, TurnOn, grid_of
 from tactile_graph_pads.circuits import Inverse
 from tactile_graph_pads.circuits.nearest import MOST_NOISES
@@ -132,7 +131,7 @@ def observed(
         values.setflags(write=False)
         filtered = is_filtered.direct(values, states, zero, least)
     found = Readings(grid, logs, states, seen.size, down / across, edge, turn_on, filtered=filtered)
-    if states.size > LARGE_PAD:
+    if found.is_wide:
         return uniform(found)
     if ceiling < math.inf:
         unheld = logs.copy()

@@ -37,7 +37,6 @@ from tactile_graph_likelihood.several.scene import laid
 from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
 from tactile_graph_likelihood.single.likely import likely
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, LEAST_VOIDS, MOST_VOIDS, Noise
-from tactile_graph_likelihood.single.problem import LARGE_PAD
 from tactile_graph_likelihood.single.readings import Readings, is_row
 
 COVERED = 0.95
@@ -121,7 +120,7 @@ class LocateObjects:
             If nothing rises above the noise, or no such outlines explain what does.
         """
         readings = observed(image, self._pad, self._gap_cm)
-        if readings.states.size <= LARGE_PAD:
+        if not readings.is_wide:
             readings = without_foam(readings, self._told.foam_cm) or readings
         problem, found = self.searched(readings)
         if self.expected.sizes_cm[0] is None and not is_row(readings):

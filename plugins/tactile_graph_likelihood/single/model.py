@@ -150,7 +150,7 @@ class Model:
         covariance is then wider by that of a normal distribution around the top.
         """
         problem = self._problem(readings, belief)
-        top = self._find(problem, self._begin(start, problem), EVERY)
+        top = self._find(problem, self._begin(start, problem), EVERY, readings.is_wide)
         if top.mode.height == -math.inf:
             raise self.impossible(readings)
         found = self._sampled(readings, problem, top.mode)
@@ -171,7 +171,7 @@ class Model:
         ``attempts`` are `FIRST`, `MORE` after it, or `EVERY` one.
         """
         problem = self._problem(readings)
-        return self._find(problem, self._begin(start, problem), attempts, before)
+        return self._find(problem, self._begin(start, problem), attempts, readings.is_wide, before)
 
     def likeliest_near(self, readings: Readings, point: Values | None = None) -> Likeliest:
         """Return the most likely outline near a point, shape (K,), that is nearly as likely.
@@ -179,14 +179,15 @@ class Model:
         Without a point, near what has the moments of the touched elements.
         """
         problem = self._problem(readings)
-        attempt = 0 if readings.states.size > LARGE_PAD else NEAR
-        return self._find(problem, self._begin(point, problem), [attempt])
+        attempt = 0 if readings.is_wide else NEAR
+        return self._find(problem, self._begin(point, problem), [attempt], readings.is_wide)
 
     def _find(
         self,
         problem: Problem,
         begin: Values,
         attempts: Sequence[int],
+        wide: bool,
         before: Likeliest | None = None,
     ) -> Likeliest:
         """Return the most likely outline of some attempts, and of what was found before."""
@@ -195,8 +196,8 @@ class Model:
         best, evidence, fit = _nowhere(n), -math.inf, NO_FIT
         if before is not None:
             best, evidence, _, fit = before
-        unsure, small = attempts[-1] + 1 < ATTEMPTS, problem.states.size <= LARGE_PAD
-        attempt = attempted if small else attempted_on_large_pad
+        unsure = attempts[-1] + 1 < ATTEMPTS
+        attempt = attempted_on_large_pad if wide else attempted
         for which in attempts:
             p, root, known = np.zeros(n), np.zeros((n, n)), best.height
             height, log, its = attempt.call(problem, table, begin, which, known, p, root)
@@ -260,7 +261,7 @@ class Model:
         self, readings: Readings, problem: Problem, mode: Mode, loose: float = 0.0
     ) -> Posterior:
         whole, table = None, self._table(problem)
-        if problem.states.size > LARGE_PAD:
+        if readings.is_wide:
             p, root = mode.p.copy(), mode.root.copy()
             if (height := settled.call(problem, p, root)) > -math.inf:
                 top = Mode(p, root, height)
@@ -294,7 +295,7 @@ class Model:
         kind = OVAL if self.kind == ELLIPSE and belief is None else self.kind
         mean, precision = belief or _no_belief(_unknowns(self.kind, self.corners))
         states = readings.states
-        if states.size > LARGE_PAD:
+        if states.size > LARGE_PAD and (readings.is_wide or readings.least_log is None):
             noise, states = _quiet(readings, noise)
         return Problem(
             kind, self.corners, readings.grid, readings.logs, states, noise, places, guess,

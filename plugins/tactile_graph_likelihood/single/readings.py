@@ -22,6 +22,9 @@ FAINT = 0.015
 that is loaded up to its supply turns a converter's noise into 0.4 % on its idle elements."""
 LARGEST = 1e100
 """Reading beyond which no pad's unit can be; the squares of smaller ones are numbers."""
+MANY = 4096
+"""Touched elements beyond which an outline is searched for by blocks of them and by its rim, since
+it holds most of them whole."""
 RANK = 8
 """Of the reading that stands for a loaded element: a grain of sand alone bears more than it."""
 
@@ -98,6 +101,11 @@ class Readings(NamedTuple):
     def size_cm(self) -> tuple[float, float]:
         """Width and height from the first element's edge to the last one's."""
         return size_of(self.grid, self.states.shape)
+
+    @property
+    def is_wide(self) -> bool:
+        """Whether so much is touched that an outline is searched for by blocks and by its rim."""
+        return self.touched > MANY
 
     @property
     def shows(self) -> NDArray[np.bool_]:

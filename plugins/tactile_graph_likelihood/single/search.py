@@ -28,7 +28,7 @@ from tactile_graph_likelihood.single.element_terms import ON, OVER, States
 from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
 from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
-from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem
+from tactile_graph_likelihood.single.problem import Problem
 from tactile_graph_likelihood.single.sample import log_volume
 
 STRAY = 7.0  # squared distance over the variance; a rectangle's corners are at 6, a disc's rim at 4
@@ -181,11 +181,10 @@ def likeliest_start(problem: Problem, table: Values, tries: int, p: Values) -> N
     for k in range(guess.shape[0]):
         p[first + 1 + k] = guess[k, 0]
     best, trial = -math.inf, p.copy()
-    thinnest = THINNEST if problem.states.size <= LARGE_PAD else 0.0
     ways = angles_to_try(kind, corners)
     for t in range(ways + tries):
         turn = (t % ways) * period(kind, corners) / ways
-        outline_of_moments(kind, corners, found, turn, thinnest, trial)
+        outline_of_moments(kind, corners, found, turn, THINNEST, trial)
         if t >= ways:
             _vary(problem, table[t], trial)
         pulled_in(kind, corners, trial, problem.prior)

@@ -19,6 +19,7 @@ from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse, L
 from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.geometry.outlines import DISC
 from tactile_graph_likelihood.settings import LocateSettings
+from tactile_graph_likelihood.single import readings
 from tactile_graph_pads.pad import load_pad
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
@@ -135,7 +136,8 @@ def test_of_few_elements_an_outline_is_sampled_as_much_more_precisely(monkeypatc
 
 @pytest.mark.slow
 @plain
-def test_on_a_large_pad_a_quick_disc_is_the_disc():
+def test_on_a_large_pad_a_quick_disc_is_the_disc(monkeypatch):
+    monkeypatch.setattr(readings, "MANY", 100)
     rng = np.random.default_rng(3)
     y, x = np.mgrid[:40, :40]
     values = np.where(np.hypot(x - 20.3, y - 19.6) < 8.0, 100.0, 0.0)
