@@ -287,6 +287,7 @@ class Threshold:
         found = footprints(image, level)
         if in_volts or (recorded := self._recorded) is None:
             return found
+        assert isinstance(found.values, MaskStack)
         levels = np.full(len(image), recorded.level)
         masks = LevelledMaskStack(found.values, levels, recorded.quantity, recorded.told)
         return Answered(masks, found.done)

@@ -331,14 +331,15 @@ class _Run:
                 with suppress(RuleError):  # of another recording, as those of another pad
                     self.runner(part) if isinstance(part, Frame) else self.runner.block(part)
 
-    def _decided(self, frames: Iterator[Frame]) -> Iterator[Frame]:
+    def _decided(self, frames: Iterator[Frame | FrameStack]) -> Iterator[Frame | FrameStack]:
         """Return the frames that were decided about, if that is asked for."""
+        from tactile_graph.engine.blocks.gathering import flat
         from tactile_graph.live.decisions import as_decided, decisions_in
 
         if self.decisions is None or self.recorded is None:
             return frames
         nodes = self.pipeline.nodes
-        return as_decided(frames, decisions_in(self.decisions, nodes), self.recorded)
+        return as_decided(flat(frames), decisions_in(self.decisions, nodes), self.recorded)
 
     def _warm_up(self, expected: int | None) -> None:
         from tactile_graph.compiled import warm_up
