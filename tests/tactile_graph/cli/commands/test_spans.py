@@ -132,6 +132,7 @@ def test_a_part_comes_to_the_same_in_stacks(
             assert written(*asked) == expected
 
 
+@pytest.mark.slow
 def test_of_frames_in_stacks_only_those_asked_for_count(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(gathering, "WORTH_BLOCKS", 1)
     monkeypatch.delattr(Pipeline, "frames")
