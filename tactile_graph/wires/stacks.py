@@ -209,7 +209,7 @@ class MaskStack(Stack):
         How many cells of each are on.
     """
 
-    item = Mask
+    item: ClassVar[type] = Mask
     WIDEST = Mask.WIDEST
     """Columns that go into a word."""
 

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from helpers_filters import ELEMENTS, image_of, random_mask
+from tactile_graph.errors import DataError, Degenerate
+from tactile_graph.testing.same import same
 from tactile_graph.wires.stacks import ImageStack, MaskStack
 from tactile_graph_filters.morphology.close import Close
 from tactile_graph_filters.morphology.dilate import Dilate
@@ -97,3 +99,64 @@ def test_levels_of_frames_are_those_of_each(settings, quantity):
     else:
         assert found.done.all()
         assert_same(found.values, [Threshold(**settings)(image) for image in images])
+
+
+def strange_values(shape: tuple[int, int], dtype: str) -> np.ndarray:
+    """Return frames of noise, loads, nothing, one value, steps, dead cells and dead lines."""
+    rng = np.random.default_rng(5)
+    values = rng.normal(20.0, 2.0, (24, *shape))
+    values[::2, : shape[0] // 2, : shape[1] // 2] += rng.uniform(0.0, 60.0, (12, 1, 1))
+    values[4] = 0.0
+    values[5:7] = 7.0
+    values[8:10] = np.round(values[8:10])
+    values[10:12] = np.maximum(values[10:12], 20.0)
+    values[12, rng.random(shape) < 0.1] = 1.0
+    values[13, 0], values[14, :, -1] = 3.0, 20.0
+    values[15, rng.random(shape) < 0.02] = 60.0
+    values = values.clip(0, 120).astype(dtype)
+    if values.dtype.kind == "f":
+        values[16, 0, 0], values[17, 0, 0], values[18] = np.nan, np.inf, 1e36
+    return values
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("dtype", ["f8", "f4", "i2", "u1"])
+@pytest.mark.parametrize("shape", [(16, 16), (5, 9), (3, 3), (1, 4), (1, 1)])
+@pytest.mark.parametrize("holes", [False, True])
+def test_levels_above_each_frame_s_noise_are_those_of_each(dtype, shape, holes):
+    values = strange_values(shape, dtype)
+    valid = np.random.default_rng(9).random(values.shape) < 0.8 if holes else None
+    if valid is not None:
+        valid[19] = False
+    stack = ImageStack(values, (0.5, 0.4), (0.1, 0.2), "gram", valid)
+    step = Threshold(level_v=0.5, level="auto")
+    found = step.stacked(stack)
+    for k, image in enumerate(stack):
+        try:
+            expected = step(image)
+        except (Degenerate, DataError):
+            assert not found.done[k]
+        else:
+            assert found.done[k]
+            assert same(found.values[k], expected)
+            assert found.values[k].count == expected.count
+            assert found.values[k].assumed == expected.assumed
+    rows = np.flatnonzero(found.done)
+    some = found.values.take(rows)
+    assert all(map(same, some, [step(stack[i]) for i in rows.tolist()]))
+    assert same([*some.field("level")], [mask.level for mask in some])
+    assert same([*some.field("count")], [mask.count for mask in some])
+
+
+@pytest.mark.slow
+def test_the_level_of_a_recording_is_told_by_stacks(tmp_path):
+    noise = np.random.default_rng(2).normal(5.0, 1.0, (30, 8, 8))
+    np.savez(tmp_path / "noise.npz", frames=noise, pitch_cm=1.0, quantity="gram")
+    step = Threshold(level="auto", noise_of=tmp_path / "noise.npz")
+    stack = ImageStack(strange_values((8, 8), "f8")[:16], quantity="gram")
+    found = step.stacked(stack)
+    assert found.done.all()
+    assert all(map(same, found.values, map(step, stack)))
+    assert found.values[0].above != Threshold(level="auto")(stack[0]).above
+    of_volts = ImageStack(noise[:4], quantity="volt")
+    assert step.stacked(of_volts) is NotImplemented

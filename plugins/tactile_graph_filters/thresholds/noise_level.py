@@ -42,6 +42,7 @@ PLAINLY = 30.0
 something seems to lie there: in less than one of 100 frames of an empty pad of 3 x 3 cells."""
 LEAST_SHARE = 0.03
 """And no lower than at this share of the peak, for frames without any noise below."""
+OWN_NOISE = "the frame's own noise"
 
 
 def noise_level(image: Image) -> float:
@@ -235,7 +236,7 @@ class LevelledMask(Mask):
         count: int | None,
         level: float,
         quantity: str,
-        above: str = "the frame's own noise",
+        above: str = OWN_NOISE,
     ) -> None:
         super().__init__(values, pitch_cm, origin_cm, count)
         object.__setattr__(self, "level", level)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -11,12 +12,18 @@ from annotated_types import Ge
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
-from tactile_graph.errors import Degenerate, RuleError
+from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask, quick_mask
 from tactile_graph.wires.stacks import Answered, ImageStack, MaskStack
 from tactile_graph_filters.nan import refuse_nan
-from tactile_graph_filters.thresholds.noise_level import LevelledMask, is_untold, noise_level
+from tactile_graph_filters.thresholds.levelled_masks import LevelledMaskStack
+from tactile_graph_filters.thresholds.noise_level import (
+    OWN_NOISE,
+    LevelledMask,
+    is_untold,
+    noise_level,
+)
 from tactile_graph_filters.thresholds.recording_level import RecordingLevel, recording_level
 
 BOOL, DOUBLE = np.dtype(np.bool_), np.dtype(np.float64)
@@ -124,6 +131,18 @@ def levelled(image: Image) -> LevelledMask:
         )
     grid = (mask.pitch_cm, mask.origin_cm)
     return LevelledMask(mask.values, *grid, mask.count, level, image.quantity)
+
+
+def levelled_each(images: ImageStack) -> Answered:
+    """Return what `levelled` gives of each of several frames; where it raises, it is not done."""
+    out, n = np.zeros(images.values.shape, np.bool_), len(images)
+    counts, levels, done = np.zeros(n, np.int64), np.zeros(n), np.zeros(n, np.bool_)
+    for i, image in enumerate(images):
+        with suppress(Degenerate, DataError):  # told by the step itself
+            mask = levelled(image)
+            out[i], counts[i], levels[i], done[i] = mask.values, mask.count, mask.level, True
+    masks = MaskStack(out, images.pitch_cm, images.origin_cm, counts)
+    return Answered(LevelledMaskStack(masks, levels, images.quantity, OWN_NOISE), done)
 
 
 def with_level(mask: Mask, recorded: RecordingLevel) -> LevelledMask:
@@ -257,14 +276,21 @@ class Threshold:
         return mask
 
     def stacked(self, image: ImageStack) -> Answered:
-        """Return the masks of several frames, at a level that is the same for all."""
+        """Return the masks of several frames, where a level is known for their quantity."""
         in_volts = self._level_v is not None and image.quantity == "volt"
-        takes = self.takes.get("image", (image.quantity,))
-        known = in_volts or (self._other is not None and self._recorded is None)
         level = self._level_v if in_volts else self._other
-        if level is None or not known or image.quantity not in takes or image.values.dtype != "f8":
+        takes = self.takes.get("image", (image.quantity,))
+        if image.quantity not in takes or (level is not None and image.values.dtype != "f8"):
             return NotImplemented  # type: ignore[no-any-return]
-        return footprints(image, level)
+        if level is None:
+            return levelled_each(image)
+        found = footprints(image, level)
+        if in_volts or (recorded := self._recorded) is None:
+            return found
+        assert isinstance(found.values, MaskStack)
+        levels = np.full(len(image), recorded.level)
+        masks = LevelledMaskStack(found.values, levels, recorded.quantity, recorded.told)
+        return Answered(masks, found.done)
 
 
 def _on_one_grid(image: Image, mask: Mask) -> bool:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
-from itertools import chain, islice
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,9 +36,11 @@ if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
     from tactile_graph.api.result import Result
     from tactile_graph.engine.blocks.block import Block
+    from tactile_graph.engine.blocks.gathering import Taken
     from tactile_graph.engine.tables.table import Table
     from tactile_graph.exporter import Writer
     from tactile_graph.wires.frame import Frame
+    from tactile_graph.wires.frame_stack import FrameStack
 
 STALLED_S = 1.0
 
@@ -272,13 +274,11 @@ class _Run:
     # -- the frames --------------------------------------------------------------------------
 
     def _results(self) -> Iterator[Result | Block[Result]]:
-        from tactile_graph.engine.blocks.gathering import WORTH_BLOCKS, flat, is_long
+        from tactile_graph.engine.blocks.gathering import WORTH_BLOCKS, Taken, flat, is_long
 
         in_blocks = self.lines is not None and self.drawing is None and self.runner.in_blocks
-        if in_blocks and self.span.is_all:
-            frames = self.pipeline.frames_in_stacks(self.seed, self.report)
-        else:
-            frames = self._decided(self._led(self.pipeline.frames(self.seed, self.report)))
+        source = self.pipeline.frames_in_stacks if in_blocks else self.pipeline.frames
+        frames = self._decided(self._led(Taken(source(self.seed, self.report))))
         first = next(frames, None)
         if first is None:
             return
@@ -291,36 +291,55 @@ class _Run:
         else:
             yield from self.pipeline.results(flat(given), self.runner)
 
-    def _led(self, frames: Iterator[Frame]) -> Iterator[Frame]:
-        """Return the frames asked for; steps that keep state have seen those before them."""
-        from tactile_graph.compiled import warm_up
-        from tactile_graph.engine.blocks.gathering import is_long
+    def _led(self, frames: Taken) -> Iterator[Frame | FrameStack]:
+        """Yield the frames asked for; steps that keep state have seen those before them."""
+        start = self.span.start
+        if self._leads():
+            self._lead(frames.next(start))
+        else:
+            for _ in frames.next(start):
+                pass
+        yield from frames.next(self.span.most)
+        self.report.counts["frames"] -= frames.n_left  # they came in a stack, and nobody asked
 
+    def _leads(self) -> bool:
+        """Return whether steps are to see the frames before those asked for; say what is done."""
         plan, start = self.runner.plan, self.span.start
         keeping = plan.keeping
         if not start or not keeping or self.decisions is not None:  # of others no state has seen
-            return self.span.of(frames)
+            return False
         say = partial(self.stderr.print, style="yellow", soft_wrap=True)
         sinks = [i.name for i in plan.nodes if i.node is not None and i.node.is_sink]
         if sinks:  # they would write what is not asked for
             say(f"state begins anew at frame {start} ({one_of(keeping)}): {sinks[0]} writes frames")
-            return self.span.of(frames)
+            return False
         say(f"frames before {start} are run first, for state kept by {one_of(keeping)}")
-        if is_long(start):
-            warm_up()
-        for frame in islice(frames, start):
-            with suppress(RuleError):  # of another recording, as those of another pad
-                self.runner(frame)
-        return islice(frames, self.span.most)
+        return True
 
-    def _decided(self, frames: Iterator[Frame]) -> Iterator[Frame]:
+    def _lead(self, frames: Iterator[Frame | FrameStack]) -> None:
+        """Show steps that keep state the frames before those asked for."""
+        from tactile_graph.compiled import warm_up
+        from tactile_graph.engine.blocks.gathering import Share, is_long
+        from tactile_graph.wires.frame import Frame
+        from tactile_graph.wires.frame_stack import FrameStack
+
+        if is_long(self.span.start):
+            warm_up()
+        share = Share()
+        for some in frames:
+            for part in share.parts(some) if isinstance(some, FrameStack) else (some,):
+                with suppress(RuleError):  # of another recording, as those of another pad
+                    self.runner(part) if isinstance(part, Frame) else self.runner.block(part)
+
+    def _decided(self, frames: Iterator[Frame | FrameStack]) -> Iterator[Frame | FrameStack]:
         """Return the frames that were decided about, if that is asked for."""
+        from tactile_graph.engine.blocks.gathering import flat
         from tactile_graph.live.decisions import as_decided, decisions_in
 
         if self.decisions is None or self.recorded is None:
             return frames
         nodes = self.pipeline.nodes
-        return as_decided(frames, decisions_in(self.decisions, nodes), self.recorded)
+        return as_decided(flat(frames), decisions_in(self.decisions, nodes), self.recorded)
 
     def _warm_up(self, expected: int | None) -> None:
         from tactile_graph.compiled import warm_up

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator
+from itertools import chain
 
 import numpy as np
 
@@ -62,6 +63,43 @@ def flat(frames: Iterable[Frame | FrameStack]) -> Iterator[Frame]:
         if isinstance(some, FrameStack):
             yield from some
         else:
+            yield some
+
+
+class Taken:
+    """Frames of which so many are taken at a time; a stack is parted where that ends within it.
+
+    Parameters
+    ----------
+    frames : iterator of Frame or FrameStack
+        None is asked for before it is taken; of a stack the others wait, or stay behind.
+    """
+
+    def __init__(self, frames: Iterator[Frame | FrameStack]) -> None:
+        self._frames = frames
+        self._rest: FrameStack | None = None
+
+    @property
+    def n_left(self) -> int:
+        """How many frames of the last stack nobody has taken."""
+        return 0 if self._rest is None else len(self._rest)
+
+    def next(self, n: int | None) -> Iterator[Frame | FrameStack]:
+        """Yield the next ``n`` frames, all that follow for None, as far as there are any."""
+        if n is None:
+            rest, self._rest = self._rest, None
+            yield from self._frames if rest is None else chain([rest], self._frames)
+            return
+        while n > 0:
+            some = next(self._frames, None) if self._rest is None else self._rest
+            self._rest = None
+            if some is None:
+                return
+            size = len(some) if isinstance(some, FrameStack) else 1
+            if isinstance(some, FrameStack) and size > n:
+                self._rest = some.take(np.arange(n, size))
+                some = some.take(np.arange(n))
+            n -= size
             yield some
 
 

@@ -6,6 +6,7 @@ import json
 import warnings
 from importlib.util import find_spec
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -30,6 +31,7 @@ from tactile_graph.steps import Report
 from tactile_graph_sources.readers.arrays.matlab import frames_first
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
+from tactile_graph_sources.readers.words import dialect as dialect_module
 from tactile_graph_sources.readers.words.told import Told
 
 FILES = dialects()
@@ -492,3 +494,12 @@ def test_a_matrix_with_a_short_row_is_no_error_of_numpy_s(tmp_path: Path) -> Non
     rows[3] = rows[3].rpartition(",")[0]
     with pytest.raises(DataError, match="holds no whole frame"):
         frames_of(text_of(tmp_path, "\n".join(rows) + "\n"))
+
+
+def test_in_lines_without_quotes_no_quoted_comma_is_sought() -> None:
+    """The pattern takes longer than all else that is done to a line of many cells."""
+    words_of = dialect_module.Dialect
+    with patch.object(dialect_module, "_QUOTED_COMMA", None):
+        assert words_of(",").fields("1,2.5,3") == ["1", "2.5", "3"]
+        assert words_of(";").fields('"1";2,5') == ["1", "2,5"]
+    assert words_of(",").fields('"1","2,5","3"') == ["1", "2,5", "3"]

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, islice
+from statistics import median
 from typing import Any
 
 import numpy as np
@@ -235,8 +236,8 @@ def is_garbage(frame: Frame, around: Sequence[Frame]) -> bool:
     nearest = min(_distance(values, v) for v in (others[0], others[-1]))
     if not 0.0 < nearest < 1e100:
         return False
-    usual = np.median(others, axis=0)
-    apart = np.median([_distance(v, usual) for v in others])
+    usual = _middle(np.array(others))
+    apart = median(_distance(v, usual) for v in others)
     change = values - usual
     if _distance(values, usual) <= JUMP * apart:
         return False
@@ -254,6 +255,13 @@ def coherence(values: Values) -> float:
     steps = [np.diff(values, axis=axis).ravel() for axis in (0, 1)]
     along = np.concatenate(steps)
     return 1.0 - float((along**2).mean()) / (2.0 * spread) if len(along) else 1.0
+
+
+def _middle(values: Values) -> Values:
+    """Return the median of a few frames, cell by cell, as `np.median` does in twice the time."""
+    n = len(values)
+    both: Values = np.sort(values, axis=0)[(n - 1) // 2 : n // 2 + 1]
+    return np.asarray(both.mean(axis=0))
 
 
 def _distance(a: Values, b: Values) -> float:

@@ -122,13 +122,14 @@ class Dialect(NamedTuple):
             line = line.translate(_BRACKETS)
         if self.separator == "|":
             line = without_rules(line)
-        if _QUOTED_COMMA.search(line) is not None and self.separator == ",":
+        quoted = '"' in line  # in plain lines no pattern is sought: it takes a third of the time
+        if quoted and self.separator == "," and _QUOTED_COMMA.search(line) is not None:
             # Of thousands, or decimal? Kept together it is told as no number, never as two.
             fields = next(csv.reader([line]))
             if self.decimal_comma:
                 return [f.replace(",", ".") for f in fields]
             return [_ungrouped(f, ",") for f in fields] if self.thousands == "," else fields
-        if '"' in line:
+        if quoted:
             line = line.replace('"', "")
         if self.thousands and self.separator != ",":
             fields = [_ungrouped(f, self.thousands) for f in line.split(self.separator)]

@@ -10,7 +10,7 @@ import pytest
 from helpers_graphs import frame
 from tactile_graph import Frame
 from tactile_graph.engine.blocks import gathering
-from tactile_graph.engine.blocks.gathering import Share, flat, gathered
+from tactile_graph.engine.blocks.gathering import Share, Taken, flat, gathered
 from tactile_graph.wires.frame_stack import FrameStack
 
 
@@ -56,3 +56,19 @@ def test_a_block_is_as_long_as_is_done_in_a_moment() -> None:
     assert sizes[0] == 16
     assert set(sizes[1:]) <= {4, 5}
     assert sum(sizes) == 100
+
+
+def test_as_many_are_taken_as_are_asked_for_and_no_further_one_is_read() -> None:
+    frames = [frame(k, k) for k in range(9)]
+    stacks = [FrameStack.of(frames[:4]), FrameStack.of(frames[4:6]), *frames[6:]]
+    for start in range(10):
+        for n in (0, 1, 3, None):
+            taken = Taken(iter(stacks))
+            assert [*flat(taken.next(start))] == frames[:start]
+            stop = None if n is None else start + n
+            assert [*flat(taken.next(n))] == frames[start:stop]
+    asked = iter(stacks)
+    taken = Taken(asked)
+    assert [len(s) for s in taken.next(5)] == [4, 1]
+    assert taken.n_left == 1
+    assert next(asked) is frames[6]

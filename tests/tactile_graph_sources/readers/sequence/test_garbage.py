@@ -11,7 +11,12 @@ from helpers_dialects import film, flat
 from helpers_recordings import frames_of, write
 from tactile_graph import Frame
 from tactile_graph.steps import Report
-from tactile_graph_sources.readers.sequence.garbage import coherence, is_garbage, without_garbage
+from tactile_graph_sources.readers.sequence.garbage import (
+    _middle,
+    coherence,
+    is_garbage,
+    without_garbage,
+)
 from tactile_graph_sources.recording import recording
 from tactile_graph_sources.writers.write_npz import write_npz
 
@@ -80,3 +85,13 @@ def test_coherence_is_that_of_patches_and_of_chance() -> None:
     assert coherence(np.exp(-((y - 8.0) ** 2 + (x - 8.0) ** 2) / 20.0)) > 0.9
     assert abs(coherence(RNG.normal(size=(64, 64)))) < 0.1
     assert coherence(np.ones((4, 4))) == 1.0
+
+
+@pytest.mark.parametrize("dtype", ["f8", "f4", "u1", "i2"])
+@pytest.mark.parametrize("n", [3, 4, 5, 6])
+def test_the_usual_frame_is_the_median_to_the_last_bit(n: int, dtype: str) -> None:
+    frames = (np.random.default_rng(n).normal(100.0, 40.0, (n, 9, 7)).clip(0, 255)).astype(dtype)
+    expected = np.median(frames, axis=0)
+    found = _middle(frames)
+    assert found.dtype == expected.dtype
+    assert found.tobytes() == expected.tobytes()
