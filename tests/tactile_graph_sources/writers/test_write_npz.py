@@ -136,7 +136,7 @@ def test_arrays_are_those_that_numpy_would_write(tmp_path: Path) -> None:
 
 
 def test_frames_are_packed_without_a_second_copy_of_them(tmp_path: Path) -> None:
-    values = np.zeros((2000, 32, 32))
+    values = np.zeros((1000, 32, 32))
     values[:, 3:9, 5:8] = 0.5
     frames = [Frame.of(v) for v in values]
     tracemalloc.start()
