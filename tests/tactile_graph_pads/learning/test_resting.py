@@ -163,8 +163,9 @@ def test_what_comes_and_goes_is_no_noise_however_large_it_is(least, share, colum
         resting(np.maximum(np.round(values), least), "it")
 
 
+@pytest.mark.slow
 def test_the_noise_among_objects_takes_little_more_memory_than_the_frames():
-    values = np.random.default_rng(0).normal(size=(1500, 16, 16))
+    values = np.random.default_rng(0).normal(size=(4000, 16, 16))
     values[3, 2] = np.nan
     tracemalloc.start()
     try:
