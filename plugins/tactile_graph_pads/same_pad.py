@@ -46,7 +46,8 @@ def check_same_pad(
     a, b = first.quantity, other.quantity
     if read_as(a) != read_as(b):
         raise DataError(name, f"holds {b}, but {first_name} {a}: convert one of them")
-    if pitch_known and not np.allclose(first.pitch_cm, other.pitch_cm, rtol=1e-3):
+    p, q = first.pitch_cm, other.pitch_cm
+    if pitch_known and p != q and not np.allclose(p, q, rtol=1e-3):  # as a rule the very same
         raise DataError(
             name,
             f"has a pitch of {other.pitch_cm[0]:g} x {other.pitch_cm[1]:g} cm, but {first_name} of "

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
 
 Array = NDArray[np.float64]
 RESOLUTION = 1e-3
@@ -84,10 +83,29 @@ class Space(NamedTuple):
         covariance = (1.0 - shrinkage) / freedom * (off.T @ off)
         covariance[np.diag_indices_from(covariance)] += shrinkage
         root = np.linalg.cholesky(covariance)
-        whitening = solve_triangular(root, np.diag(1.0 / scale), lower=True).T
+        whitening = solved(root, np.diag(1.0 / scale)).T
         middle = means @ whitening
         _, sizes, variates = np.linalg.svd(middle - middle.mean(axis=0), full_matrices=False)
         return cls(whitening, variates[sizes > 1e-9 * max(float(sizes[0]), 1e-300)].T)
+
+
+def solved(root: Array, wanted: Array) -> Array:
+    """Return what a lower triangular matrix makes ``wanted`` of, row by row from the first.
+
+    By NumPy alone: SciPy brings threads of its own for linear algebra, and where the two take
+    turns each waits for cores that the other's hold. As exact as SciPy's, which an LU
+    decomposition is not.
+
+    Parameters
+    ----------
+    root : ndarray, shape (T, T)
+        None of its diagonal is 0.
+    wanted : ndarray, shape (T, n)
+    """
+    found = wanted.copy()
+    for k, row in enumerate(root):
+        found[k] = (found[k] - row[:k] @ found[:k]) / row[k]
+    return found
 
 
 def means_of(rows: Array, labels: NDArray[np.intp]) -> Array:

@@ -34,19 +34,23 @@ class Chances(NamedTuple):
 
 
 @compiled_as_is
-def mean_costs(chance: Any, smooth: Any, reach: int, out: Any) -> None:
+def mean_costs(chance: Any, far: float, nearer: Any, reach: int, out: Any) -> None:
     """Write the mean over ``chance`` of the smoothness cost beside each label.
 
-    ``smooth`` is the same from ``reach`` on; so only what is nearer needs a sum.
+    It is ``far`` from ``reach`` on; so only what is ``nearer`` needs a sum: what difference d costs
+    beyond it, at L - 1 + d, for in one row the labels beside x take it in their order.
     """
     n = len(chance)
     for y in range(n):
-        out[y] = smooth[min(reach, n - 1)]
+        out[y] = far
     for x in range(n):
         share = chance[x]
         if share > LOST:
-            for y in range(max(0, x - reach), min(n, x + reach + 1)):
-                out[y] += share * (smooth[abs(x - y)] - smooth[min(reach, n - 1)])
+            first, end = max(0, x - reach), min(n, x + reach + 1)
+            beside = nearer[n - 1 - x + first : n - 1 - x + end]
+            here = out[first:end]
+            for k in range(len(here)):
+                here[k] += share * beside[k]
 
 
 @compiled_as_is
@@ -112,6 +116,9 @@ def mean_sweep(
     lined = len(sites) > 0
     moved = 0.0
     costs, chance = np.empty(n_levels), np.empty(n_levels)
+    far, nearer = smooth[min(reach, n_levels - 1)], np.empty(2 * n_levels - 1)
+    for d in range(n_levels):
+        nearer[n_levels - 1 + d] = nearer[n_levels - 1 - d] = smooth[d] - far
     for s in range(len(cells)):
         i, j = cells[s, 0], cells[s, 1]
         for x in range(n_levels):
@@ -133,7 +140,7 @@ def mean_sweep(
         if change > 0.0:
             for x in range(len(chance)):
                 labels[i, j, x] = chance[x]
-            mean_costs(chance, smooth, reach, felt[i, j])
+            mean_costs(chance, far, nearer, reach, felt[i, j])
         moved = max(moved, change)
     for s in range(len(sites)):
         is_down, i, j = sites[s, 0] == 1, sites[s, 1], sites[s, 2]

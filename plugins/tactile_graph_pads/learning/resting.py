@@ -154,10 +154,10 @@ def resting_among_objects(values: Array, where: str) -> Resting:
     offset, step = np.nanmedian(held, axis=0), step_of(held)
     pressed, rest = often_pressed(held, offset, missing, step)
     offset[pressed] = rest
-    below = np.where(held < offset, held - offset, np.nan)
-    with np.errstate(invalid="ignore"):
-        squares = np.nansum(below**2, axis=0) / np.maximum((~np.isnan(below)).sum(axis=0), 1)
-    noise = np.sqrt(squares)
+    below = held - offset
+    np.fmin(below, 0.0, out=below)  # 0, too, where an element was not read
+    squares = np.square(below, out=below).sum(axis=0)
+    noise = np.sqrt(squares / np.maximum((held < offset).sum(axis=0), 1))
     stuck, still, _ = _odd(offset, noise, missing, step)
     _refuse_object(offset, stuck, missing, where, "in more than half of the frames, so that the "
                    "empty pad cannot be told; record it and give it by --empty")  # fmt: skip

@@ -17,6 +17,8 @@ SAME = 0.7
 MOST_FRAMES = 3000
 LEAST_RIGHT = 0.5
 """Share of the frames that must be right for a level to be chosen by that."""
+AT_ONCE = 256
+"""Frames of which a second copy is held."""
 LEVELS = 32
 """Levels tried between the noise and the median contact's peak."""
 
@@ -95,9 +97,11 @@ def filled(values: Array, good: Flags) -> Array:
     around = np.ones((3, 3))
     while known.any() and not known.all():
         number = ndimage.correlate(known, around, mode="constant")
-        total = ndimage.correlate(out, around[None], mode="constant")
         new = (known == 0.0) & (number > 0.0)
-        out = np.where(new, total / np.maximum(number, 1.0), out)
+        for first in range(0, len(out), AT_ONCE):
+            part = out[first : first + AT_ONCE]
+            total = ndimage.correlate(part, around[None], mode="constant")
+            part[:, new] = total[:, new] / number[new]
         known = np.maximum(known, new)
     return out
 

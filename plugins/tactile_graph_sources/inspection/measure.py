@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -38,6 +38,8 @@ LASTING = 0.25
 """Share of the highest reading that a patch must reach at rest to be an object that stays there:
 what pads read by themselves differs less from cell to cell."""
 FULL_SCALES = (255, 511, 1023, 2047, 4095, 8191, 16383, 32767, 65535)
+TOGETHER = 1_000_000
+"""Readings that are copied at once."""
 Cells = tuple[tuple[int, int], ...]
 
 
@@ -108,7 +110,10 @@ class Measured:
 
 def stack_of_frames(frames: Sequence[Frame]) -> Stack:
     """Return values of frames of one shape, (frames, rows, columns); NaN where a cell has none."""
-    return np.stack([f.image.filled(np.nan) for f in frames]).astype(np.float64)
+    stack = np.empty((len(frames), *frames[0].image.shape))
+    for values, frame in zip(stack, frames, strict=True):
+        values[...] = frame.image.filled(np.nan)
+    return stack
 
 
 def measure(frames: Sequence[Frame]) -> Measured:
@@ -122,15 +127,19 @@ def measure(frames: Sequence[Frame]) -> Measured:
     """
     stack = stack_of_frames(frames)
     with np.errstate(over="ignore", invalid="ignore"):
-        known = np.asarray(np.isfinite(stack).any(axis=0))
-        filled = np.where(np.isfinite(stack), stack, np.nan_to_num(_median(stack)))
-        idle = _idle(filled, known)
-        values = stack[np.isfinite(stack)]
+        finite = np.isfinite(stack)
+        known, whole = np.asarray(finite.any(axis=0)), bool(finite.all())
+        values = stack.ravel() if whole else stack[finite]
         step = _step(values)
+        lowest, highest = _ends(values)
+        del values
+        filled = stack
+        if not whole:
+            np.copyto(filled, np.nan_to_num(_median(stack)), where=~finite)
+        idle = _idle(filled, known)
         silent = _silent(filled, idle, known, step or 0.0)
         alive = known & ~silent
         sigma = _noise(filled, step or 0.0)
-        lowest, highest = _ends(values)
         noise = (
             None if sigma is None or not alive.any() else float(np.quantile(sigma[alive], QUIET))
         )
@@ -145,12 +154,12 @@ def measure(frames: Sequence[Frame]) -> Measured:
         )
         return Measured(
             len(frames),
-            (stack.shape[1], stack.shape[2]),
+            (filled.shape[1], filled.shape[2]),
             *pace,
             lowest,
             highest,
             step,
-            _full_scale(values, step, highest),
+            _full_scale(step, highest),
             noise,
             offset,
             float(spread[1] - spread[0]),
@@ -168,19 +177,20 @@ def measure(frames: Sequence[Frame]) -> Measured:
 
 def _median(stack: Stack) -> Stack:
     """Return each cell's median over time; 0 where it never has a value."""
-    known = np.isfinite(stack)
-    if known.all():
-        return np.asarray(np.median(stack, axis=0))
-    middle = np.zeros(stack.shape[1:])
-    some = known.any(axis=0)
-    middle[some] = np.nanmedian(stack[:, some], axis=0)
-    return middle
+
+    def middle(rows: slice) -> Stack:
+        part = stack[:, rows]
+        found, some = np.zeros(part.shape[1:]), np.isfinite(part).any(axis=0)
+        found[some] = np.nanmedian(part[:, some], axis=0)
+        return found
+
+    return _by_rows(middle, stack)
 
 
 def _idle(filled: Stack, known: NDArray[np.bool_]) -> Stack:
     """Return each cell's level at rest; with too few frames the same for all, their median."""
     if len(filled) >= FEWEST_FRAMES:
-        return np.asarray(np.quantile(filled, IDLE_QUANTILE, axis=0))
+        return _by_rows(lambda rows: np.quantile(filled[:, rows], IDLE_QUANTILE, axis=0), filled)
     level = float(np.median(filled[:, known])) if known.any() else 0.0
     return np.full(filled.shape[1:], level)
 
@@ -194,12 +204,32 @@ def _noise(filled: Stack, step: float) -> Stack | None:
     """
     if len(filled) < FEWEST_FRAMES:
         return None
-    change = np.diff(filled, axis=0)
-    trembles = (change != 0.0).mean(axis=0) >= FEWEST_CHANGES
-    spread = change + step * np.random.default_rng(0).uniform(-0.5, 0.5, change.shape)
-    sigma = MAD_TO_SD * np.median(np.abs(spread), axis=0) / np.sqrt(2.0)
+    shape = (len(filled) - 1, *filled.shape[1:])
+    # Nothing is at random where readings are continuous.
+    off = np.random.default_rng(0).uniform(-0.5, 0.5, shape) if step else None
+
+    def changes(rows: slice) -> Stack:
+        """Return the share of frames in which cells change, and the median of the changes."""
+        change = np.diff(filled[:, rows], axis=0)
+        often = (change != 0.0).mean(axis=0)
+        if off is not None:
+            change += step * off[:, rows]
+        middle = np.median(np.abs(change, out=change), axis=0, overwrite_input=True)
+        return np.stack([often, middle], axis=1)
+
+    often, middle = _by_rows(changes, filled).swapaxes(0, 1)
+    trembles = often >= FEWEST_CHANGES
+    sigma = MAD_TO_SD * middle / np.sqrt(2.0)
     added = MAD_TO_SD * 0.25 * step / np.sqrt(2.0)
     return np.where(trembles, np.sqrt(np.maximum(sigma**2 - added**2, 0.0)), 0.0)
+
+
+def _by_rows(found: Callable[[slice], Stack], stack: Stack) -> Stack:
+    """Return what is found of each cell over time, a few rows at once: it takes copies of them."""
+    n_rows = stack.shape[1]
+    at_once = max(1, TOGETHER * n_rows // max(stack.size, 1))
+    parts = [slice(first, first + at_once) for first in range(0, n_rows, at_once)]
+    return np.concatenate([found(rows) for rows in parts])
 
 
 def _ends(values: Stack) -> tuple[float, float]:
@@ -208,7 +238,7 @@ def _ends(values: Stack) -> tuple[float, float]:
 
 def _step(values: Stack) -> float | None:
     """Return the step that all readings are whole multiples of, where they have one."""
-    if not values.size or np.abs(values).max() > 1e12:
+    if not values.size or max(values.max(), -values.min()) > 1e12:
         return None
     levels = np.unique(values[:: max(1, len(values) // 200_000)])
     if len(levels) < 2:
@@ -218,7 +248,7 @@ def _step(values: Stack) -> float | None:
     return step if bool((np.abs(counts - np.rint(counts)) < 1e-3).all()) else None
 
 
-def _full_scale(values: Stack, step: float | None, highest: float) -> int | None:
+def _full_scale(step: float | None, highest: float) -> int | None:
     whole = step is not None and step % 1 == 0
     return int(highest) if whole and highest in FULL_SCALES else None
 

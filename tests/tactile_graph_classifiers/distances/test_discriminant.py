@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
+from scipy.linalg import solve_triangular
 
 from helpers_classifiers import export_of, normal_rows, reading, three_objects
 from tactile_graph import Frame, load
@@ -13,7 +15,7 @@ from tactile_graph.errors import DataError, PipelineError, RuleError
 from tactile_graph_classifiers.database.choice import Choice, Manner
 from tactile_graph_classifiers.database.opening import load_known
 from tactile_graph_classifiers.distances import choosing
-from tactile_graph_classifiers.distances.canonical import Space, WithLogarithms
+from tactile_graph_classifiers.distances.canonical import Space, WithLogarithms, solved
 from tactile_graph_classifiers.distances.choosing import Examples, choose, name_left_out
 from tactile_graph_classifiers.distances.discriminant import CanonicalDiscriminant
 from tactile_graph_classifiers.distances.discriminant_model import Learned
@@ -313,6 +315,38 @@ def test_in_its_space_readings_of_an_object_vary_alike_in_every_direction():
     off = at - np.array([at[some.labels == k].mean(axis=0) for k in range(8)])[some.labels]
     np.testing.assert_allclose(off.T @ off / (len(off) - 8), np.eye(24), atol=1e-4)
     np.testing.assert_allclose(space.variates.T @ space.variates, np.eye(7), atol=1e-9)
+
+
+def test_a_nearly_singular_root_is_solved_as_exactly_as_by_scipy():
+    rng = np.random.default_rng(1)
+    for least in (1e-2, 1e-6, 1e-10):
+        turned = np.linalg.svd(rng.normal(size=(12, 12)))[0]
+        spread = turned * np.logspace(0, -12, 12) @ turned.T
+        scale = np.sqrt(np.diag(spread))
+        root = np.linalg.cholesky(spread / np.outer(scale, scale) + least * np.eye(12))
+        exact = exactly_solved(root)
+        off = [
+            np.abs(found - exact).max() / np.abs(exact).max()
+            for found in (
+                solved(root, np.eye(12)),
+                solve_triangular(root, np.eye(12), lower=True),
+            )
+        ]
+        assert off[0] <= max(2.0 * off[1], 1e-15)
+
+
+def exactly_solved(root: np.ndarray) -> np.ndarray:
+    """Return the inverse of a lower triangular matrix, in fractions until the end."""
+    rows = [[Fraction(float(value)) for value in row] for row in root]
+    found: list[list[Fraction]] = []
+    for k, row in enumerate(rows):
+        found.append(
+            [
+                (Fraction(int(k == n)) - sum(row[m] * found[m][n] for m in range(k))) / row[k]
+                for n in range(len(rows))
+            ]
+        )
+    return np.array([[float(value) for value in row] for row in found])
 
 
 def test_scores_are_those_of_the_gaussian_densities():

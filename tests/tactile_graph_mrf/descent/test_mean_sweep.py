@@ -10,7 +10,7 @@ import pytest
 from helpers_mrf import patterns
 from tactile_graph.wires import Image, Mask
 from tactile_graph_mrf.descent.mean_field import MeanField
-from tactile_graph_mrf.descent.mean_sweep import softened
+from tactile_graph_mrf.descent.mean_sweep import mean_costs, softened
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import Problem, prepare
 
@@ -160,3 +160,14 @@ def test_however_much_the_labels_cost_their_chances_add_up_to_one():
     softened.loops(1e6 + np.array([2.0, 0.0, 5000.0, np.log(3.0)]), 1.0, chance)
     weights = np.array([np.exp(-2.0), 1.0, 0.0, 1.0 / 3.0])
     np.testing.assert_allclose(chance, weights / weights.sum(), rtol=1e-9)
+
+
+@pytest.mark.parametrize("reach", [0, 3, 8])
+def test_mean_costs_are_sums_over_all_labels(reach: int) -> None:
+    smooth = np.minimum(np.arange(9.0), reach) ** 2
+    chance = np.random.default_rng(0).dirichlet(np.ones(9))
+    nearer = np.concatenate([smooth[:0:-1], smooth]) - smooth[reach]
+    found = np.empty(9)
+    mean_costs(chance, smooth[reach], nearer, reach, found)
+    apart = np.abs(np.subtract.outer(range(9), range(9)))
+    np.testing.assert_allclose(found, smooth[apart] @ chance, rtol=1e-13, atol=1e-13)

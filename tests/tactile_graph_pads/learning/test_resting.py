@@ -1,5 +1,7 @@
 """What an empty pad says: offset, noise, drift, bad elements; and what is not empty."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -159,3 +161,18 @@ def test_what_comes_and_goes_is_no_noise_however_large_it_is(least, share, colum
     values[rng.permutation(80)[: int(80 * share)], :, :columns] += 300.0
     with pytest.raises(DataError, match=f"not empty: in {int(80 * share)} of 80 frames"):
         resting(np.maximum(np.round(values), least), "it")
+
+
+@pytest.mark.slow
+def test_the_noise_among_objects_takes_little_more_memory_than_the_frames():
+    values = np.random.default_rng(0).normal(size=(4000, 16, 16))
+    values[3, 2] = np.nan
+    tracemalloc.start()
+    try:
+        found = resting_among_objects(values, "it")
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 2.6 * values.nbytes
+    below = np.where(values < found.offset, values - found.offset, np.nan)
+    np.testing.assert_array_equal(found.noise, np.sqrt(np.nanmean(below**2, axis=0)))

@@ -1,5 +1,7 @@
 """Contacts, the level from which there are any, and bad elements filled."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -82,3 +84,19 @@ def test_frames_of_one_placement_count_once():
     touched = np.array([bumps(c) > 20.0 for c in at])
     assert placements(touched).tolist() == [0, 5]
     assert placements(np.zeros((3, 4, 4), bool)).tolist() == []
+
+
+def test_bad_elements_are_filled_without_a_second_copy_of_all_frames():
+    values = np.random.default_rng(0).normal(size=(2000, 16, 16))
+    good = np.ones((16, 16), bool)
+    good[3:6, 4], good[0, 0] = False, False
+    tracemalloc.start()
+    try:
+        found = filled(values, good)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < 1.5 * values.nbytes
+    around = [values[:, 0, 1], values[:, 1, 0], values[:, 1, 1]]
+    np.testing.assert_allclose(found[:, 0, 0], np.mean(around, axis=0))
+    np.testing.assert_array_equal(found[:, good], values[:, good])

@@ -1,11 +1,13 @@
 """What a recording's frames tell: how they follow each other."""
 
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tactile_graph.wires import Frame
+from tactile_graph_sources.inspection import measure as measuring
 from tactile_graph_sources.inspection.measure import measure
 
 BURST, STEP_S = 10, 0.01
@@ -33,3 +35,50 @@ def test_frames_that_come_in_bursts_have_no_even_step() -> None:
     found = measure(bursts(by_device=False))
     assert found.rate_hz == pytest.approx(99.0 / 0.9)
     assert found.jitter is None
+
+
+def pressed(kind: str, n: int = 60) -> np.ndarray:
+    """Return frames of noise around 10 in which nine cells are pressed ever harder."""
+    rng = np.random.default_rng(0)
+    values = rng.normal(10.0, 1.0, (n, 12, 17))
+    values[:, 2:5, 2:5] += np.linspace(0.0, 50.0, n)[:, None, None]
+    if kind == "whole numbers":
+        values = np.round(values)
+    if kind == "missing cells":
+        values[rng.random(values.shape) < 0.05] = np.nan
+        values[:, 0, 0] = np.nan
+    return values
+
+
+@pytest.mark.parametrize("kind", ["continuous", "whole numbers", "missing cells"])
+def test_a_few_rows_at_once_tell_the_same_to_the_digit(
+    kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    values = pressed(kind)
+    found = []
+    for together in (1, 5000, 10**9):
+        monkeypatch.setattr(measuring, "TOGETHER", together)
+        found.append(measure([Frame.of(v, index=k) for k, v in enumerate(values)]))
+    assert found[0] == found[1] == found[2]
+    if kind != "missing cells":
+        assert found[0].offset == np.median(np.quantile(values, 0.1, axis=0))
+        step = found[0].step or 0.0
+        change = np.diff(values, axis=0)
+        change += step * np.random.default_rng(0).uniform(-0.5, 0.5, change.shape)
+        sigma = 1.4826 * np.median(np.abs(change), axis=0) / np.sqrt(2.0)
+        added = 1.4826 * 0.25 * step / np.sqrt(2.0)
+        assert found[0].noise == np.quantile(np.sqrt(sigma**2 - added**2), 0.25)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "most"), [("continuous", 2.0), ("whole numbers", 3.0)])
+def test_frames_are_measured_in_little_more_memory_than_they_take(kind: str, most: float) -> None:
+    values = np.tile(pressed(kind, 200), (1, 8, 8))
+    frames = [Frame.of(v, index=k) for k, v in enumerate(values)]
+    tracemalloc.start()
+    try:
+        measure(frames)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert peak < most * values.nbytes
