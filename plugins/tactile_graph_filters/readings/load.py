@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
+from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_filters.nan import refuse_unbounded
 
@@ -86,7 +87,7 @@ class LoadOf:
         DataError
             If a valid cell holds NaN or infinity.
         Degenerate
-            If the load, or its moment, is too large for a number.
+            If no cell is valid, or the load, or its moment, is too large for a number.
         """
         values = np.ascontiguousarray(image.values, np.float64)
         n, total, peak, moment_x, moment_y = measure(values, self._usable(image), self._above)
@@ -100,6 +101,8 @@ class LoadOf:
             x_cm = y_cm = None
         force_n = force_of(total, image)
         left_out = 0 if image.valid is None else int(np.count_nonzero(~image.valid))
+        if left_out == image.values.size > 0:
+            raise Degenerate("no cell of the image is valid, so its load is not known")
         area_cm2 = n * image.cell_area_cm2
         return Load(total > 0.0, total, force_n, area_cm2, peak, x_cm, y_cm, left_out)
 

@@ -5,7 +5,7 @@ import pytest
 
 import references_filters as references
 from helpers_filters import ORIGIN, PITCH, image_of, random_mask
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, Degenerate
 from tactile_graph_filters.readings.force import Force
 from tactile_graph_filters.readings.load import Load, LoadOf, measure
 
@@ -75,3 +75,8 @@ def test_it_measures_as_the_reference_does(above):
     expected = pytest.approx(references.measure(values, usable, above))
     assert measure.loops(values, usable, above) == expected
     assert measure.compiled(values, usable, above) == expected
+
+
+def test_where_no_cell_is_valid_the_load_is_not_known_instead_of_0():
+    with pytest.raises(Degenerate, match="no cell of the image is valid, so its load is not known"):
+        LoadOf()(image_of([[0.0, 0.0]], valid=[[False, False]]))
