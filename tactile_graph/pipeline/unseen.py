@@ -7,6 +7,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from tactile_graph.pipeline.graph import Graph, Node
 from tactile_graph.pipeline.wiring import Ref
 
+NOTHING: dict[str, int] = {"count": 0, "loaded": False}
+"""Fields by which values tell conditions that nothing is there, and what they then hold."""
+
 
 def unseen_ends(pipeline: Graph, asked: Sequence[str] = ()) -> list[str]:
     """Return what is to be said of steps that never see that their list has become empty.
@@ -42,12 +45,12 @@ def _skipped_where_empty(pipeline: Graph, node: Node) -> Iterator[Node]:
     lists = [r for b in node.inputs if b.port.required and b.port.item is not None for r in b.refs]
     made_of = pipeline.needed(lists)
     for before in (node, *_before(pipeline, lists)):
-        counts = [
-            ref
+        empty = {
+            ref: NOTHING[ref.path[-1]]
             for ref in (before.guard.refs if before.guard else ())
-            if ref.path[-1:] == ("count",) and not ref.item_path and ref.node in made_of
-        ]
-        if before.guard and before.guard.settled(dict.fromkeys(counts, 0)) is False:
+            if ref.path and ref.path[-1] in NOTHING and not ref.item_path and ref.node in made_of
+        }
+        if before.guard and before.guard.settled(empty) is False:
             yield before
 
 
@@ -62,3 +65,4 @@ def _before(pipeline: Graph, refs: Iterable[Ref]) -> Iterator[Node]:
         node = pipeline.nodes[name]
         yield node
         waiting += [b.refs[0].node for b in node.inputs if b.port.required and not b.collects]
+        waiting += [c.node for c in node.choices if len(node.choices) == 1]

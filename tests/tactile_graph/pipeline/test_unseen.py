@@ -93,6 +93,15 @@ def test_nothing_is_told_where_the_empty_list_is_seen_or_nothing_is_followed(
     assert told(own, **settings) == []
 
 
+def test_a_pipeline_of_contacts_skips_them_where_nothing_is_loaded() -> None:
+    text = (
+        "{pipeline: p, nodes: {found: {use: contacts, in: frame}, "
+        "one: {step: track, in: found.contacts.contacts}}, outputs: [one]}"
+    )
+    (words,) = unseen_ends(loads(text))
+    assert "'when: load.loaded' of node 'found/contacts' skips it there" in words
+
+
 def test_what_is_not_asked_for_is_not_told() -> None:
     text = TEXT % ("", "follow", "found.things", ", when: found.count > 0", "found")
     pipeline = loads(text, "p", registry(STEPS))
