@@ -9,8 +9,9 @@ import pytest
 
 from helpers_cli import call, install
 from helpers_graphs import registry
-from tactile_graph import Image, Mask, loads
+from tactile_graph import Image, Mask, load, loads
 from tactile_graph.pipeline.unseen import unseen_ends
+from tactile_graph.plugins.registry import installed
 from tactile_graph.steps import TimeGap
 
 
@@ -100,6 +101,12 @@ def test_a_pipeline_of_contacts_skips_them_where_nothing_is_loaded() -> None:
     )
     (words,) = unseen_ends(loads(text))
     assert "'when: load.loaded' of node 'found/contacts' skips it there" in words
+
+
+@pytest.mark.slow
+def test_no_installed_pipeline_does_so() -> None:
+    for name in installed().names("pipelines"):
+        assert unseen_ends(load(name)) == [], name
 
 
 def test_what_is_not_asked_for_is_not_told() -> None:
