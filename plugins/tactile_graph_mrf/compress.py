@@ -8,6 +8,7 @@ import numpy as np
 from annotated_types import Ge, Gt, Le
 from numpy.typing import NDArray
 
+from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.wires import Image
 
@@ -53,6 +54,11 @@ def compress(
         size if that is more, so that noise is never spread over the scale. ``stands_out`` is
         False for an empty pad: noise is as far below 0 as above.
 
+    Raises
+    ------
+    Degenerate
+        If no cell is valid.
+
     Notes
     -----
     Cells that are not finite become invalid, as those are that were; they hold 0. So do a few that
@@ -62,6 +68,8 @@ def compress(
     usable = np.isfinite(values)
     if image.valid is not None:
         usable = usable & image.valid
+    if usable.size and not usable.any():
+        raise Degenerate("no cell of the image is valid, so nothing says whether there is a load")
     noise, broken_below = _below_zero(values[usable], times)
     usable = usable & (values >= broken_below)
     seen = values[usable]

@@ -9,6 +9,8 @@ import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
 
+from tactile_graph.wires.checked import checked_pitch
+
 
 @dataclass(frozen=True)
 class Geometry:
@@ -37,6 +39,12 @@ class Geometry:
         "it is one number for both ways, as elements of a pad file are square",
     )
     __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
+
+    def __post_init__(self) -> None:
+        try:
+            checked_pitch(self.pitch_cm)
+        except ValueError as error:
+            raise ValueError(f"geometry: element_cm + gap_cm: {error}") from None
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -85,7 +85,7 @@ class ForceLaw:
     turn_on_bend : float
         How fast: ``ln R`` gains ``turn_on_bend * ln(F / turn_on_g)**2``.
     saturation_g : float
-        Above it the resistance levels off.
+        Above it the resistance levels off; infinite for none.
     saturation_headroom : float
         Conductance still to be gained above that load, as a share of the one reached there.
     repeatability : float
@@ -102,6 +102,7 @@ class ForceLaw:
     saturation_g: Annotated[float, Gt(0)] = 10_000.0
     saturation_headroom: Annotated[float, Gt(0)] = 0.5
     repeatability: Annotated[float, Ge(0)] = 0.0
+    may_be_infinite: ClassVar[tuple[str, ...]] = ("saturation_g",)
     __pydantic_config__: ClassVar[dict[str, str]] = {"extra": "forbid"}
 
     def __post_init__(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Mapping, Sequence
 from functools import cache
 from typing import Any, TypeVar, cast
@@ -20,6 +21,10 @@ _COMPARISONS = {
 }
 
 
+_MAPS = ("dataclass_type", "model_attributes_type")
+"""Pydantic's words for something else where a mapping is due that makes a record."""
+
+
 class RecordError(PipelineError):
     """All that is wrong with a pad or scene, found in one run."""
 
@@ -33,7 +38,8 @@ def read_record(document: Document, kind: type[T], what: str) -> T:
         As read; its own problems are reported too.
     kind : type
         A frozen dataclass that forbids unknown keys. Its ``key_hints`` tell what is meant where a
-        key, known or not, is wrong.
+        key, known or not, is wrong; its ``may_be_infinite`` names the keys for which infinity is
+        an answer.
     what : str
         What the file should be, for its errors: ``"a pad"``.
 
@@ -52,7 +58,7 @@ def read_record(document: Document, kind: type[T], what: str) -> T:
         for e in _one_a_place(document.data, error.errors(include_url=False)):
             _note(document, e, kind)
         raise RecordError(document.problems) from None
-    _refuse_yes_for_numbers(document, document.data, record, ())
+    _refuse_no_numbers(document, document.data, record, ())
     if document.problems:
         raise RecordError(document.problems)
     return record
@@ -64,16 +70,20 @@ def _adapter(kind: Hashable) -> TypeAdapter[Any]:
     return TypeAdapter(cast(Any, kind))
 
 
-def _refuse_yes_for_numbers(document: Document, data: Any, value: Any, path: Path) -> None:
-    """Note each yes or no that was taken as the number 1 or 0."""
+def _refuse_no_numbers(document: Document, data: Any, value: Any, path: Path) -> None:
+    """Note each yes or no that was taken as the number 1 or 0, and each number that is none."""
     if isinstance(data, Mapping):
+        endless = getattr(value, "may_be_infinite", ())
         for key, inner in data.items():
-            _refuse_yes_for_numbers(document, inner, getattr(value, key), (*path, key))
+            if key not in endless:
+                _refuse_no_numbers(document, inner, getattr(value, key), (*path, key))
     elif isinstance(data, list | tuple):
         for index, inner in enumerate(data):
-            _refuse_yes_for_numbers(document, inner, value[index], (*path, index))
+            _refuse_no_numbers(document, inner, value[index], (*path, index))
     elif isinstance(data, bool) and not isinstance(value, bool):
         document.problem(f"{path[-1]} must be a number, got {shown(data)}", *path)
+    elif isinstance(value, float) and not math.isfinite(value):
+        document.problem(f"{path[-1]} must be a finite number, got {shown(data)}", *path)
 
 
 def inline(data: Mapping[str, Any], where: str) -> Document:
@@ -124,6 +134,9 @@ def _note(document: Document, e: Any, kind: Any) -> None:
         document.problem(f"{name} must be {sign} {context[key]:g}, got {shown(got)}", *path)
     elif error == "value_error":
         document.problem(str(context.get("error", e["msg"])), *path)
+    elif error in _MAPS:
+        allowed = f"; allowed are: {one_of(_keys(_records(kind, path)))}"
+        document.problem(f"{name} is a mapping of settings, got {shown(got)}{allowed}", *path)
     else:
         text = str(e["msg"]).removeprefix("Input ")
         hint = _key_hint(name, _records(kind, path[:-1]))
@@ -153,12 +166,17 @@ def _holds(data: Any, part: str | int) -> bool:
 
 
 def _unknown_key(name: str, parents: Path, kind: Any) -> str:
-    from dataclasses import fields
-
     within = _records(kind, parents)
-    known = sorted({f.name for k in within for f in fields(k)})
+    known = _keys(within)
     hint = _key_hint(name, within) or did_you_mean(name, known) or f"; allowed are: {one_of(known)}"
     return f"unknown key {shown(name)}{hint}"
+
+
+def _keys(within: Sequence[Any]) -> list[str]:
+    """Return the keys of records."""
+    from dataclasses import fields
+
+    return sorted({f.name for k in within for f in fields(k)})
 
 
 def _key_hint(name: str, within: Sequence[Any]) -> str:

@@ -200,6 +200,13 @@ def test_what_holds_no_answer_says_why():
     empty = Image(np.zeros((16, 16)), (1.3, 1.3), (-0.15, -0.15), "gram")
     with pytest.raises(Degenerate, match="no element bears a load"):
         made(FootprintDisc)(empty)
+    part = Image(
+        empty.values, (1.3, 1.3), (-0.15, -0.15), "gram", np.arange(256).reshape(16, 16) > 3
+    )
+    with pytest.raises(
+        Degenerate, match=r"no element with a valid reading .* \(4 of 256 have none"
+    ):
+        made(FootprintDisc)(part)
     oblong = Image(np.ones((4, 4)), (1.3, 1.0), (0.0, 0.0), "gram")
     with pytest.raises(RuleError, match="needs square cells"):
         made(FootprintDisc)(oblong)

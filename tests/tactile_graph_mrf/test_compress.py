@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_mrf.compress import compress
 
@@ -54,6 +55,12 @@ def test_nothing_above_zero_gives_an_even_image(values: np.ndarray) -> None:
     made = compress(Image(values))
     assert not made.stands_out
     np.testing.assert_array_equal(made.image.values, np.zeros(values.shape))
+
+
+def test_where_no_cell_is_valid_nothing_says_that_the_pad_is_empty() -> None:
+    for image in (Image(np.zeros((2, 2)), valid=np.zeros((2, 2), bool)), Image([[np.nan]])):
+        with pytest.raises(Degenerate, match="no cell of the image is valid, so nothing says"):
+            compress(image)
 
 
 def test_what_is_not_known_stays_unknown_and_sets_no_scale() -> None:

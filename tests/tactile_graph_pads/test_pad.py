@@ -1,5 +1,6 @@
 """Pads from YAML, from load to volts and back."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -168,11 +169,34 @@ def test_all_that_is_wrong_with_a_pad_file_is_said_at_once_with_line_and_column(
             {"unevenness": {"bumps": [{"row": 16, "column": 1, "gain": 2}]}},
             r"unevenness\.bumps: element \(16, 1\) is not on the pad",
         ),
+        (
+            {"geometry": [1, 2]},
+            r"pad\.geometry: geometry is a mapping of settings, got \[1, 2\]; allowed are: col",
+        ),
+        (
+            {"circuit": 3},
+            r"pad\.circuit: circuit is a mapping of settings, got 3; allowed are: bias_ohm, ",
+        ),
+        (
+            {"geometry": {"element_cm": 1e300}},
+            r"element_cm \+ gap_cm: a pitch must be within 1e-06 to 1e\+06 cm, got 1e\+300",
+        ),
+        ({"geometry": {"gap_cm": math.inf}}, "a pitch must be within 1e-06 to 1e.06 cm, got inf"),
+        ({"geometry": {"element_cm": math.nan}}, "element_cm must be > 0, got nan"),
+        (
+            {"circuit": {"kind": "divider", "supply_v": math.inf}},
+            r"pad\.circuit\.supply_v: supply_v must be a finite number, got inf",
+        ),
     ],
 )
 def test_what_is_wrong_with_a_pad_given_as_a_mapping_is_said_by_its_place(data, message):
     with pytest.raises(RecordError, match=message):
         load_pad(data)
+
+
+def test_a_law_may_be_told_to_have_no_saturation():
+    pad = load_pad({"law": {"saturation_g": math.inf}})
+    assert pad.law.load_of(pad.law.conductance_s(np.array([[1e5]]))) == pytest.approx(1e5)
 
 
 def test_a_file_that_is_no_mapping_or_no_yaml_is_refused(tmp_path):

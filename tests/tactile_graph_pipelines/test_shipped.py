@@ -6,10 +6,11 @@ import json
 from itertools import islice
 from typing import Any
 
+import numpy as np
 import pytest
 
 import tactile_graph_thesis
-from tactile_graph import load
+from tactile_graph import Frame, load
 from tactile_graph.cli.output.writers import json_row
 from tactile_graph.engine.outcomes.outcome import Failed
 from tactile_graph.plugins.registry import installed
@@ -27,9 +28,12 @@ SLOW = {name for name in NAMES if "likelihood" in name or "locate" in name} | {
 """Their kernels alone compile for a quarter of a minute, or they are steps between others."""
 
 
-@pytest.mark.parametrize(
+each = pytest.mark.parametrize(
     "name", [pytest.param(n, marks=[pytest.mark.slow] if n in SLOW else []) for n in NAMES]
 )
+
+
+@each
 def test_runs_on_its_own_source_without_an_error(name: str) -> None:
     pipeline = load(name)
     results = list(islice(pipeline.stream(), 6))
@@ -67,3 +71,21 @@ def test_is_short_says_what_it_is_and_is_named_as_its_file(name: str) -> None:
 
 def test_each_circle_evolves_from_the_one_before() -> None:
     assert [load(f"circle-{n}").evolves for n in (1, 2, 3)] == ["", "circle-1", "circle-2"]
+
+
+@each
+def test_a_frame_without_a_valid_reading_is_never_an_untouched_pad(name: str) -> None:
+    pipeline = load(name)
+    frame = next(iter(pipeline.frames()))
+    lost = Frame.of(
+        np.full(frame.image.shape, np.nan),
+        frame.image.pitch_cm,
+        frame.image.origin_cm,
+        frame.image.quantity,
+    )
+    result = pipeline.run(lost)
+    outcomes = [result.outcome(output) for output in pipeline.outputs]
+    if name == "adaptive":  # tells how many cells it can read
+        assert "when legible is false (cells.share = 0)" in str(outcomes[0])
+    else:
+        assert all(isinstance(outcome, Failed) for outcome in outcomes), outcomes

@@ -9,12 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
+from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_filters.nan import refuse_unbounded
+from tactile_graph_filters.thresholds.noise_level import noise_level
 
 NEWTON_PER_GRAM = 9.80665e-3
 """Weight of one gram under standard gravity."""
 NEWTON_PER_KILOPASCAL_CM2 = 0.1
+MANY_CELLS, LARGE_SHARE = 0.25, 0.1
+"""Of all cells so many must count, and those that do not stand out make up so much of the total,
+before it is told."""
 
 
 class Load(NamedTuple):
@@ -57,6 +62,25 @@ def measure(values, usable, above):  # type: ignore[no-untyped-def]
     return n, total, peak, moment_x, moment_y
 
 
+def counts_cells_at_rest(image: Image, value: Load) -> str:
+    """Return what to say where much of the total is of cells that do not stand out; else empty."""
+    n_counted = value.contact_area_cm2 / image.cell_area_cm2
+    if value.total <= 0.0 or n_counted <= MANY_CELLS * image.values.size:
+        return ""
+    level = noise_level(image)
+    on = image.values >= level
+    if image.valid is not None:
+        on &= image.valid
+    share = 1.0 - float(image.values[on].sum()) / value.total
+    if share <= LARGE_SHARE:
+        return ""
+    return (
+        f"{share:.0%} of the total is of cells that do not stand out of the others, below "
+        f"{level:.3g} {image.unit}, and draws the centre along; if nothing lies on them, the step "
+        "'tare' takes off what they read at rest, and 'above' leaves them out"
+    )
+
+
 class LoadOf:
     """Return total load, force, contact area, peak and centre of pressure of the valid cells.
 
@@ -69,10 +93,12 @@ class LoadOf:
     -----
     The force of an image in grams is that of the weight under standard gravity, 9.80665 m/s^2;
     in kilopascals it is pressure times cell area (pitch by pitch), summed. The centre is the
-    mean of the cell centres weighted by the readings.
+    mean of the cell centres weighted by the readings. All cells count, as in the sums that makers
+    of pads print: what an untouched cell reads is part of them, of which it is told.
     """
 
     stateless = True
+    notice = staticmethod(counts_cells_at_rest)
 
     def __init__(self, *, above: float = 0.0) -> None:
         self._above = above
@@ -86,7 +112,7 @@ class LoadOf:
         DataError
             If a valid cell holds NaN or infinity.
         Degenerate
-            If the load, or its moment, is too large for a number.
+            If no cell is valid, or the load, or its moment, is too large for a number.
         """
         values = np.ascontiguousarray(image.values, np.float64)
         n, total, peak, moment_x, moment_y = measure(values, self._usable(image), self._above)
@@ -100,6 +126,8 @@ class LoadOf:
             x_cm = y_cm = None
         force_n = force_of(total, image)
         left_out = 0 if image.valid is None else int(np.count_nonzero(~image.valid))
+        if left_out == image.values.size > 0:
+            raise Degenerate("no cell of the image is valid, so its load is not known")
         area_cm2 = n * image.cell_area_cm2
         return Load(total > 0.0, total, force_n, area_cm2, peak, x_cm, y_cm, left_out)
 

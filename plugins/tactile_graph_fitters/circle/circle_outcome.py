@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import Degenerate
+from tactile_graph.wires import Points
 from tactile_graph.wires.stacks import Answered, PointsStack, RecordStack
 from tactile_graph_fitters.circle.fitted_circle import FittedCircle
 from tactile_graph_fitters.circle.principal_axes import (
@@ -20,6 +21,9 @@ from tactile_graph_fitters.circle.principal_axes import (
 )
 
 DOUBLE = np.dtype(np.float64)
+LEAST_BEND = 2.0
+"""Root mean squares of the points' distances by which their arc must bend to be told from a line.
+"""
 
 Found: TypeAlias = tuple[int, float, float, float, float, int]
 """Status, centre x and y, radius, rms, iterations."""
@@ -74,6 +78,21 @@ def _rescaled(xy: NDArray[np.float64], fit: Callable[..., Found], *settings: flo
     except OverflowError:
         raise Degenerate(f"{len(xy)} points: their circle is too large for a number") from None
     return FittedCircle.quickly(x, y, radius, rms, len(xy), iterations)
+
+
+def hardly_bends(points: Points, value: FittedCircle) -> str:
+    """Return what to say of a circle whose points may as well lie along a line; else empty."""
+    (x, y), rms = (points.xy_cm - (value.x_cm, value.y_cm)).T, value.rms_cm
+    angles = np.sort(np.arctan2(y, x))
+    open_rad = max(float(np.diff(angles).max(initial=0.0)), 2.0 * math.pi - float(np.ptp(angles)))
+    bend = 2.0 * value.radius_cm * math.sin(0.25 * (2.0 * math.pi - open_rad)) ** 2
+    if not bend < LEAST_BEND * rms:
+        return ""
+    return (
+        f"over its {len(points.xy_cm)} points the circle bends by {bend:.2g} cm, and they lie "
+        f"{rms:.2g} cm off it: these are no points of a disc, whose centre and radius they would "
+        "tell"
+    )
 
 
 def why(xy: NDArray[np.float64], status: int, radius: float, iterations: int) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tactile_graph.steps import Linked
 from tactile_graph.wires import Points
 from tactile_graph.wires.stacks import Answered, PointsStack
-from tactile_graph_fitters.circle.circle_outcome import circle_from, circles_from
+from tactile_graph_fitters.circle.circle_outcome import circle_from, circles_from, hardly_bends
 from tactile_graph_fitters.circle.fitted_circle import CircleParts, FittedCircle
 from tactile_graph_fitters.circle.geometric import (
     geometric_fit,
@@ -61,5 +61,6 @@ def fit_circle_linked() -> Linked:
     return Linked(geometric_fit_of_parts, CircleParts, FittedCircle.quickly)
 
 
+fit_circle.notice = hardly_bends  # type: ignore[attr-defined]
 fit_circle.stacked = fit_circle_stacked  # type: ignore[attr-defined]
 fit_circle.linked = fit_circle_linked  # type: ignore[attr-defined]

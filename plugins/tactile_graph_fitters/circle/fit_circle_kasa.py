@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.algebraic import KASA, algebraic_fit
-from tactile_graph_fitters.circle.circle_outcome import circle_from
+from tactile_graph_fitters.circle.circle_outcome import circle_from, hardly_bends
 from tactile_graph_fitters.circle.fitted_circle import FittedCircle
 
 
@@ -34,3 +34,6 @@ def fit_circle_kasa(points: Points) -> FittedCircle:
     10.1109/TIM.1976.6312298.
     """
     return circle_from(points.xy_cm, algebraic_fit, KASA)
+
+
+fit_circle_kasa.notice = hardly_bends  # type: ignore[attr-defined]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_later
 from tactile_graph.wires import Points
 from tactile_graph_fitters.circle.algebraic import back, distance_from_circle
-from tactile_graph_fitters.circle.circle_outcome import circle_from
+from tactile_graph_fitters.circle.circle_outcome import circle_from, hardly_bends
 from tactile_graph_fitters.circle.fitted_circle import FittedCircle
 from tactile_graph_fitters.circle.principal_axes import NOT_SETTLED, OK, ONE_LINE, into_frame
 
@@ -56,6 +56,9 @@ def fit_circle_thesis(
     about 120 degrees do not settle. Source: thesis 4.2.4 and appendix B.
     """
     return circle_from(points.xy_cm, thesis_fit, max_iterations, tolerance)
+
+
+fit_circle_thesis.notice = hardly_bends  # type: ignore[attr-defined]
 
 
 @compiled_later

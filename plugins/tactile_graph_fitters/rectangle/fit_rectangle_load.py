@@ -101,7 +101,8 @@ class FitRectangleLoad:
         RuleError
             If image and mask differ in shape.
         Degenerate
-            If fewer than 3 cells are on, all are in one line, or no minimum is found.
+            If fewer than 3 cells are on, none of them has a valid reading or bears a load, all are
+            in one line, or no minimum is found.
         """
         if image is not None:
             require_same_shape(image=image, mask=mask)
@@ -131,6 +132,10 @@ def _window(mask: Mask, image: Image | None, power: float) -> Window:
     if image is not None:
         readings = image.values[rows, columns]
         bears = readings > 0.0
+        if image.valid is not None and not image.valid[rows, columns].any():
+            raise Degenerate(
+                f"none of {len(rows)} cells that are on has a valid reading: nothing to fit"
+            )
         if not bears.any():
             raise Degenerate(f"none of {len(rows)} cells that are on bears a load: nothing to fit")
         found = np.log(readings[bears], dtype=np.float64)

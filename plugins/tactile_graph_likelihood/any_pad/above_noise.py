@@ -9,7 +9,7 @@ from annotated_types import Gt
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_twin_of
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, Degenerate
 from tactile_graph.wires import Image, Mask, quick_mask
 from tactile_graph_filters.readings.clipped_noise import clipped_noise
 from tactile_graph_filters.readings.dead_below import without_dead
@@ -69,6 +69,8 @@ def risen(image: Image, pad: Pad, deviations: float = SHOWS) -> Risen:
     ------
     DataError
         If a valid cell is not finite or beyond 1e100.
+    Degenerate
+        If no cell is valid.
     """
     its = taught(pad, image)
     if its is not None:
@@ -84,6 +86,8 @@ def _risen_by_element(image: Image, its: Taught, deviations: float) -> Risen:
         raise _unbounded()
     values = values - its.offset
     known = its.good if image.valid is None else its.good & image.valid
+    if not known.any():
+        raise _untold()
     noise = frame_noise(values[known])
     least: float | Values = float(max(deviations * noise.sigma, 0.5 * noise.step))
     if its.noise is not None:
@@ -94,6 +98,10 @@ def _risen_by_element(image: Image, its: Taught, deviations: float) -> Risen:
     if image.valid is not None:
         kept = kept & image.valid
     return Risen(np.where(kept, above, 0.0), least, shows & known, noise.zero, its)
+
+
+def _untold() -> Degenerate:
+    return Degenerate("no cell of the image is valid, so nothing says what is touched")
 
 
 def _unbounded() -> DataError:
@@ -109,6 +117,8 @@ def _rising(
     ------
     DataError
         If a valid cell is not finite or beyond 1e100.
+    Degenerate
+        If no cell is valid.
     """
     values, known = np.ascontiguousarray(image.values, dtype=np.float64), EVERY
     values.setflags(write=False)
@@ -118,6 +128,8 @@ def _rising(
         known = np.ascontiguousarray(image.valid)
         known.setflags(write=False)
         readings = values[known]
+        if not readings.size:
+            raise _untold()
     bounded, *found = rising.direct(values, known, in_order(readings), float(deviations), wanted)
     if not bounded:
         raise _unbounded()
@@ -299,6 +311,8 @@ class AboveNoise:
             If a pad was learned, of another shape, pitch or quantity.
         ValueError
             If a valid cell is not finite or beyond 1e100.
+        Degenerate
+            If no cell is valid.
         """
         its = taught(self._pad, image)
         if its is None:

@@ -226,15 +226,21 @@ def readings_of(image: Image, gap_cm: float, least: float, faint: float = FAINT)
         states[~image.valid] = UNKNOWN
         touched = int((states == ON).sum())
     if touched == 0:
-        raise Degenerate(_why(float(values.max(initial=0.0)), least))
+        raise Degenerate(_why(float(values.max(initial=0.0)), least, image.valid))
     return Readings(grid, logs, states, touched)
 
 
-def _why(peak: float, least: float) -> str:
+def _why(peak: float, least: float, valid: NDArray[np.bool_] | None) -> str:
     if 0.0 < peak < least:
         return (
             f"no reading reaches {least:.3g}, the least that shows (see shows_from); the largest "
             f"is {peak:.3g}: no outline fits"
+        )
+    if valid is not None and not valid.all():
+        n_bad = int(np.count_nonzero(~valid))
+        return (
+            f"no element with a valid reading bears a load ({n_bad} of {valid.size} have none): no "
+            "outline fits"
         )
     return "no element bears a load: no outline fits"
 

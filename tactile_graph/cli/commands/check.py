@@ -146,6 +146,7 @@ def _right_pipeline(pipeline: Pipeline) -> Text:
     from rich.text import Text
 
     from tactile_graph.pipeline.load import evolves_in_circle
+    from tactile_graph.pipeline.unseen import unseen_ends
 
     n = len(pipeline.nodes)
     source = (
@@ -162,4 +163,6 @@ def _right_pipeline(pipeline: Pipeline) -> Text:
         text.append(f"\n  free for tune: {'; '.join(free)}", style="dim")
     if pipeline.unused:
         text.append(f"\n  no output needs: {', '.join(pipeline.unused)}", style="yellow")
+    for told in unseen_ends(pipeline):
+        text.append(f"\n  {told}", style="yellow")
     return text

@@ -152,6 +152,7 @@ def run(
     check_targets((("-o", lines.name if lines else None), ("--plot", plot)), [opened])
     one = _Run(opened, tuple(dict.fromkeys(only)), span, seed, lines, plot, verify, decisions)
     _tell_idle(opened, settings, one.only)
+    _tell_unseen(opened, one.only)
     if divided:
         one.divided(workers, on, resume)
     one.go()
@@ -168,6 +169,16 @@ def _tell_idle(pipeline: Pipeline, settings: Sequence[str], asked: Sequence[str]
             node = name.rpartition(".")[0]
             told = f"--set {name}: changes nothing, for what is asked for does not need {node!r}"
             console(stderr=True).print(told, style="yellow", soft_wrap=True)
+
+
+def _tell_unseen(pipeline: Pipeline, asked: Sequence[str]) -> None:
+    """Say which steps never see that what they follow has left."""
+    from tactile_graph.pipeline.unseen import unseen_ends
+
+    for told in unseen_ends(pipeline, asked):
+        from tactile_graph.cli.terminal import console
+
+        console(stderr=True).print(told, style="yellow", soft_wrap=True)
 
 
 def _check_files(output: Output | None, plot: str | None) -> None:

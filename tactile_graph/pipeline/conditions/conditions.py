@@ -86,7 +86,7 @@ class Guard:
         """Pickle without the function, which is made again of the meaning."""
         return _made_again, (self.text, self.refs, self.meaning, self.groups)
 
-    def settled(self, known: Mapping[Ref, str]) -> bool | None:
+    def settled(self, known: Mapping[Ref, str | int]) -> bool | None:
         """Return what comes out where all that is known are these values; None if that is open."""
         values = {f"v{i}": known[ref] for i, ref in enumerate(self.refs) if ref in known}
         tree = ast.parse(self.meaning, mode="eval").body
@@ -99,7 +99,7 @@ def _made_again(
     return Guard(text, refs, _function(meaning, len(refs), groups), meaning, groups)
 
 
-def _settled(node: ast.expr, values: Mapping[str, str]) -> bool | None:
+def _settled(node: ast.expr, values: Mapping[str, str | int]) -> bool | None:
     if isinstance(node, ast.BoolOp):
         parts = [_settled(part, values) for part in node.values]
         decides = isinstance(node.op, ast.Or)

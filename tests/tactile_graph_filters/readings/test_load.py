@@ -1,13 +1,15 @@
 import math
+import re
 
 import numpy as np
 import pytest
 
 import references_filters as references
 from helpers_filters import ORIGIN, PITCH, image_of, random_mask
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, Degenerate
+from tactile_graph.wires import Image
 from tactile_graph_filters.readings.force import Force
-from tactile_graph_filters.readings.load import Load, LoadOf, measure
+from tactile_graph_filters.readings.load import Load, LoadOf, counts_cells_at_rest, measure
 
 
 def test_total_area_peak_and_centre_of_pressure():
@@ -75,3 +77,39 @@ def test_it_measures_as_the_reference_does(above):
     expected = pytest.approx(references.measure(values, usable, above))
     assert measure.loops(values, usable, above) == expected
     assert measure.compiled(values, usable, above) == expected
+
+
+def test_where_no_cell_is_valid_the_load_is_not_known_instead_of_0():
+    with pytest.raises(Degenerate, match="no cell of the image is valid, so its load is not known"):
+        LoadOf()(image_of([[0.0, 0.0]], valid=[[False, False]]))
+
+
+def pressed(rest: float, noise: float = 1e-3) -> Image:
+    values = rest + noise * np.random.default_rng(0).standard_normal((16, 16))
+    values[4:8, 4:8] += 1.0
+    return image_of(values, "volt")
+
+
+@pytest.mark.parametrize(
+    ("image", "words"),
+    [
+        (pressed(0.0), ""),
+        (
+            pressed(0.1),
+            "58% of the total is of cells that do not stand out of the others, below 0.",
+        ),
+        (pressed(0.0, noise=0.05), "2.% of the total is of cells"),
+        (image_of(np.full((16, 16), 0.1)), "100% of the total is of cells"),
+        (image_of(np.zeros((16, 16))), ""),
+        (image_of(np.eye(16)), ""),
+    ],
+)
+def test_a_total_of_what_untouched_cells_read_says_so(image, words):
+    told = counts_cells_at_rest(image, LoadOf()(image))
+    assert bool(told) == bool(words)
+    assert re.match(words, told)
+
+
+def test_nothing_is_said_where_such_cells_are_left_out():
+    image = pressed(0.1)
+    assert counts_cells_at_rest(image, LoadOf(above=0.5)(image)) == ""

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from helpers_circles import ALL_FITS, arc, arc_xy, three
+from tactile_graph import Frame, load
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Points
+from tactile_graph_fitters.circle.circle_outcome import hardly_bends
 from tactile_graph_fitters.circle.fit_circle import fit_circle
 from tactile_graph_fitters.circle.fit_circle_thesis import fit_circle_thesis
 
@@ -65,3 +67,38 @@ def test_points_of_other_memory_layouts_are_taken(fit):
     swapped = fit(Points(xy[::-1, ::-1]))
     assert three(swapped) == pytest.approx([3.0, 2.0, 1.0], abs=1e-7)
     assert fit(Points(xy.astype(np.float32))).radius_cm == pytest.approx(1.0, abs=1e-6)
+
+
+def bar(degrees: float) -> Points:
+    """Return the outline of a bar of 20 by 4 cm, turned."""
+    along = np.linspace(-10.0, 10.0, 11)
+    sides = [np.stack([along, np.full(11, y)], axis=1) for y in (-2.0, 2.0)]
+    outline = np.concatenate([*sides, [[10.3, 0.6]]])
+    turn = np.radians(degrees)
+    turned = [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]
+    return Points(outline @ np.array(turned) + 5.0)
+
+
+@pytest.mark.parametrize("degrees", [0, 40, 90, 200])
+def test_a_circle_through_points_of_a_bar_says_that_they_hardly_bend(degrees):
+    fit = fit_circle(bar(degrees))
+    assert fit.radius_cm > 100.0
+    assert "they lie 2 cm off it: these are no points of a disc" in hardly_bends(bar(degrees), fit)
+
+
+@pytest.mark.parametrize("degrees", [120, 180, 360])
+@pytest.mark.parametrize("fit", ALL_FITS)
+def test_nothing_is_said_of_an_arc_that_bends_by_more_than_it_scatters(fit, degrees):
+    noise = 0.01 * np.random.default_rng(0).standard_normal((40, 2))
+    disc = Circle(3.0, -7.0, 5.0)
+    points = Points(arc_xy(disc, degrees, 40) + noise)
+    assert fit.notice(points, fit(points)) == ""
+
+
+@pytest.mark.slow
+def test_a_pipeline_tells_of_the_bar_it_took_for_a_disc():
+    values = np.zeros((16, 16))
+    values[np.abs(np.subtract.outer(np.arange(16), 0.5 * np.arange(16)) - 3.0) < 1.8] = 1.0
+    result = load("circle-1").run(Frame.of(values, 1.3, quantity="volt"))
+    assert result["circle"].radius_cm > 20.8
+    assert "these are no points of a disc" in result.notices["circle"]

@@ -146,6 +146,14 @@ def test_a_footprint_without_load_is_refused_in_words():
         FitRectangleLoad()(Mask(values), Image(np.zeros((8, 8))))
 
 
+def test_a_footprint_without_a_valid_reading_is_not_called_one_without_load():
+    cells = np.zeros((8, 8), np.bool_)
+    cells[2:6, 2:5] = True
+    image = Image(np.zeros((8, 8)), valid=~cells)
+    with pytest.raises(Degenerate, match="none of 12 cells that are on has a valid reading"):
+        FitRectangleLoad()(Mask(cells), image)
+
+
 def test_image_and_mask_must_be_of_one_grid():
     with pytest.raises(RuleError, match=r"same shape, got \(4, 4\) and \(5, 5\)"):
         FitRectangleLoad()(Mask(np.ones((5, 5), bool)), Image(np.ones((4, 4))))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from helpers_modes import held, plainly
-from tactile_graph.errors import DataError
+from tactile_graph.errors import DataError, Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_filters.readings.ordered import in_order
 from tactile_graph_likelihood.any_pad.above_noise import EVERY, SHOWS, AboveNoise, risen, rising
@@ -65,6 +65,13 @@ def test_readings_that_rise_are_told_above_the_zero_and_others_as_none():
     assert found.zero == pytest.approx(1.5, abs=1e-3)
     np.testing.assert_array_equal(found.shows, values - found.zero > found.least)
     np.testing.assert_array_equal(found.above, np.where(found.shows, values - found.zero, 0.0))
+
+
+def test_where_no_cell_is_valid_nothing_is_called_untouched():
+    nothing = image_of(np.zeros((16, 16)), np.zeros((16, 16), np.bool_))
+    for of in (AboveNoise(), lambda image: risen(image, PAD)):
+        with pytest.raises(Degenerate, match="no cell of the image is valid, so nothing says what"):
+            of(nothing)
 
 
 def test_what_invalid_cells_hold_does_not_matter():
