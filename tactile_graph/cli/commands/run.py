@@ -5,10 +5,8 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import partial
-from itertools import chain, islice
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,11 +22,12 @@ from tactile_graph.cli.arguments import (
 )
 from tactile_graph.cli.endings import SOME_FAILED, exited
 from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
+from tactile_graph.cli.leading import led
 from tactile_graph.cli.many.options import Workers
 from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.plot import IN_A_STRIP, Plot, check_plot, plot_of
 from tactile_graph.cli.targets import check_targets
-from tactile_graph.errors import DataError, RuleError, UsageError, one_of
+from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import is_plain
 from tactile_graph.plugins.registry import installed
 
@@ -293,25 +292,9 @@ class _Run:
 
     def _led(self, frames: Iterator[Frame]) -> Iterator[Frame]:
         """Return the frames asked for; steps that keep state have seen those before them."""
-        from tactile_graph.compiled import warm_up
-        from tactile_graph.engine.blocks.gathering import is_long
-
-        plan, start = self.runner.plan, self.span.start
-        keeping = plan.keeping
-        if not start or not keeping or self.decisions is not None:  # of others no state has seen
+        if self.decisions is not None:  # of others no state has seen
             return self.span.of(frames)
-        say = partial(self.stderr.print, style="yellow", soft_wrap=True)
-        sinks = [i.name for i in plan.nodes if i.node is not None and i.node.is_sink]
-        if sinks:  # they would write what is not asked for
-            say(f"state begins anew at frame {start} ({one_of(keeping)}): {sinks[0]} writes frames")
-            return self.span.of(frames)
-        say(f"frames before {start} are run first, for state kept by {one_of(keeping)}")
-        if is_long(start):
-            warm_up()
-        for frame in islice(frames, start):
-            with suppress(RuleError):  # of another recording, as those of another pad
-                self.runner(frame)
-        return islice(frames, self.span.most)
+        return led(frames, self.span, self.runner.plan, self.runner)
 
     def _decided(self, frames: Iterator[Frame]) -> Iterator[Frame]:
         """Return the frames that were decided about, if that is asked for."""
