@@ -378,7 +378,10 @@ class _Reader:
 
 
 def assignment(
-    option: str, text: str, takes_text: Callable[[str], bool] = lambda _: False
+    option: str,
+    text: str,
+    takes_text: Callable[[str], bool] = lambda _: False,
+    takes_paths: Callable[[str], bool] = lambda _: False,
 ) -> tuple[str, Any]:
     """Return name and value of ``name=value``, the value read as YAML.
 
@@ -388,6 +391,9 @@ def assignment(
     takes_text : callable
         Whether a setting of some name may be any text: what is no YAML, such as ``%H:%M`` or
         ``#3``, is taken as it is typed there.
+    takes_paths : callable
+        Whether a setting of some name is a path or several: what YAML reads as no text, such as
+        ``D:`` or ``2024``, is taken as it is typed there.
 
     Raises
     ------
@@ -407,4 +413,7 @@ def assignment(
         raise UsageError(f"{option} {text}: a comment of YAML; put a text in quotes")
     if document.problems:
         raise UsageError(f"{option} {text}: {document.problems[0].message}")
+    is_written = value.lstrip().startswith("{") or isinstance(document.data, str | list | None)
+    if not is_written and takes_paths(name.strip()):
+        return name.strip(), value.strip()
     return name.strip(), document.data
