@@ -154,7 +154,7 @@ def test_a_colour_bar_names_the_quantity_and_its_range_holds_for_all_frames() ->
     frames = [Frame.of(np.eye(16) * peak, 1.3, quantity="volt") for peak in (1.0, 3.0)]
     figure = strip_figure(list(circle_demo().stream(frames)), ["frame"])
     (bar,) = scales(figure)
-    assert bar.get_xlabel() == "volt in V"
+    assert bar.get_xlabel() == "V"
     assert bar.get_xlim() == (0.0, 3.0)
     assert [a.images[0].get_clim() for a in cells(figure)] == [(0.0, 3.0)] * 2
 
