@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, RuleError, one_of, shown
 from tactile_graph.files import write_whole
+from tactile_graph.text_files import decoded
 from tactile_graph.wires import Image
 
 Array = NDArray[np.float64]
@@ -205,8 +206,7 @@ def read_elements(path: Path, shape: tuple[int, int]) -> Elements:
         If it cannot be read, or lacks an element, or holds what no element can be.
     """
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            text = file.read()
+        text = decoded(path.read_bytes())
         apart = next((mark for mark in ";\t" if mark in text.partition("\n")[0]), ",")
         lines = list(csv.DictReader(io.StringIO(text), delimiter=apart))
     except (OSError, UnicodeDecodeError, csv.Error) as error:

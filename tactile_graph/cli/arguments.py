@@ -28,6 +28,7 @@ from tactile_graph.plugins import registry
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph.steps.signature import Signature
     from tactile_graph.wires.frame import Frame
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -150,12 +151,14 @@ def open_pipeline(
     """
     from tactile_graph.api.pipeline import load
     from tactile_graph.pipeline.document import assignment
+    from tactile_graph.steps.settings import takes_paths, takes_text
 
     found = registry.installed()
     if name is None:
         raise UsageError(f"name a pipeline, or a file of one\n{offered()}")
     pipeline = load(name, found)
-    replaced = dict(assignment("--set", s, partial(_takes_text, pipeline)) for s in settings)
+    takes = [partial(_takes, pipeline, kind) for kind in (takes_text, takes_paths)]
+    replaced = dict(assignment("--set", s, *takes) for s in settings)
     step = source_named(pipeline, recordings, source, source_settings, span or Span())
     if replaced or step:
         pipeline = pipeline.with_settings(replaced, step)
@@ -164,13 +167,11 @@ def open_pipeline(
     return pipeline
 
 
-def _takes_text(pipeline: Pipeline, name: str) -> bool:
-    """Return whether ``node.setting`` may be any text."""
-    from tactile_graph.steps.settings import takes_text
-
+def _takes(pipeline: Pipeline, kind: Callable[[Signature, str], bool], name: str) -> bool:
+    """Return whether ``node.setting`` is of a kind, as may be any text."""
     node, _, setting = name.rpartition(".")
     signature = pipeline.nodes[node].signature if node in pipeline.nodes else None
-    return signature is not None and takes_text(signature, setting)
+    return signature is not None and kind(signature, setting)
 
 
 def source_settings_of(step: str, texts: Sequence[str]) -> dict[str, Any]:
@@ -182,12 +183,12 @@ def source_settings_of(step: str, texts: Sequence[str]) -> dict[str, Any]:
         If a text is none.
     """
     from tactile_graph.pipeline.document import assignment
-    from tactile_graph.steps.settings import takes_text
+    from tactile_graph.steps.settings import takes_paths, takes_text
 
     found = registry.installed()
     known = found.step(step) if found.has("steps", step) else None
-    is_text = {s.name for s in known.settings if takes_text(known, s.name)} if known else set()
-    return dict(assignment("--with", text, is_text.__contains__) for text in texts)
+    takes = [partial(kind, known) for kind in (takes_text, takes_paths)] if known else []
+    return dict(assignment("--with", text, *takes) for text in texts)
 
 
 def _help_preparing(name: str, recordings: Sequence[str], settings: Sequence[str]) -> None:

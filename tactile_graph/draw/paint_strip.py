@@ -40,6 +40,8 @@ FILLED = 0.3
 """How much of an area's colour covers what lies beneath."""
 MOST_NOTES = 8
 LONGEST_NOTE = 28
+LINE_IN, LETTERS_AN_INCH = 0.125, 15.0
+"""Of notes: the height of a line, and how many letters surely stand side by side."""
 
 
 class Pen:
@@ -74,7 +76,7 @@ class Pen:
         if self._lies_outside():
             notes.append("outside the picture")
         if notes:
-            self._note("\n".join(notes[:MOST_NOTES]))
+            self._note("\n".join(self._fitting(notes[:MOST_NOTES])))
 
     def truth(self, objects: Sequence[TrueObject]) -> None:
         """Paint the outlines of what truly lay there, dashed."""
@@ -189,6 +191,17 @@ class Pen:
         (x0, x1), (y1, y0) = self.axes.get_xlim(), self.axes.get_ylim()
         x, y = points[:, 0], points[:, 1]
         return not ((x >= x0) & (x <= x1) & (y >= y0) & (y <= y1)).any()
+
+    def _fitting(self, notes: list[str]) -> list[str]:
+        """Return notes as lines that a picture has room for: side by side in a low, wide one."""
+        box, dpi = self.axes.bbox, self.axes.figure.dpi
+        most = max(int(box.height / dpi / LINE_IN), 1)
+        if len(notes) <= most:
+            return notes
+        kept_whole = "  ".join(note.replace(" ", "\xa0") for note in notes)
+        lines = wrap(kept_whole, max(int(box.width / dpi * LETTERS_AN_INCH), 10))
+        lines = lines if len(lines) <= most else [*lines[: most - 1], f"{lines[most - 1]} …"]
+        return [line.replace("\xa0", " ") for line in lines]
 
     def _note(self, text: str) -> None:
         small = self._blank and not self.drawn

@@ -30,9 +30,8 @@ class Column:
 
     @property
     def scale(self) -> str:
-        """Label of the colour bar: the quantity and its unit."""
-        unit = unit_of(self.quantity)
-        return f"{self.quantity} in {unit}" if unit != self.quantity else self.quantity
+        """Label of the colour bar: the unit, or the quantity that is its own; not both."""
+        return unit_of(self.quantity)
 
 
 def columns(results: Sequence[Outcomes], nodes: Sequence[str] | None) -> list[Column]:

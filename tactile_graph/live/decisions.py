@@ -10,6 +10,7 @@ from typing import Any
 
 from tactile_graph.engine.deadlines.options import Recorded
 from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph.text_files import open_text
 from tactile_graph.wires.frame import Frame
 
 KEY = "deadline"
@@ -47,7 +48,7 @@ def decisions_in(path: Path, nodes: Collection[str]) -> Iterator[Decided]:
         If a line is no such line, or names a node that the pipeline has not.
     """
     try:
-        with path.open(encoding="utf-8") as lines:
+        with open_text(path) as lines:
             for number, line in enumerate(lines, 1):
                 yield _decided(f"{path}:{number}", line, nodes)
     except (OSError, UnicodeDecodeError) as error:

@@ -60,6 +60,13 @@ def division_of(plan: Plan, ranges: Ranges | None) -> Division:
     return Division({}, why_not=f"{endless[0]} keeps state from frame to frame, of one recording")
 
 
+def led_to(start: int, division: Division) -> Division:
+    """Return how frames from a place on may be divided, if state has seen those before them."""
+    if not (start and division.by_recording):
+        return division
+    return Division({}, why_not=f"steps keep state, and frames before {start} are run first")
+
+
 def _remembered(node: Node) -> int | None:
     """Return how many frames a node's step says it remembers; None if it does not say."""
     assert node.signature is not None

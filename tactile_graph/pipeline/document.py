@@ -19,6 +19,7 @@ from tactile_graph.pipeline.yaml_numbers import in_yaml as in_yaml
 from tactile_graph.pipeline.yaml_numbers import is_plain as is_plain
 from tactile_graph.pipeline.yaml_numbers import on_one_line as on_one_line
 from tactile_graph.pipeline.yaml_numbers import quote_for_all as quote_for_all
+from tactile_graph.text_files import decoded
 
 Path = tuple[str | int, ...]
 MOST_NODES = 20_000  # a few lines of nested aliases can stand for billions of values
@@ -136,7 +137,7 @@ def text_of_file(path: pathlib.Path, most_bytes: int = MOST_BYTES, waited_for: b
     UsageError
         If it is longer, or a pipe.
     OSError, UnicodeDecodeError
-        If it cannot be read, or is not UTF-8.
+        If it cannot be read, or is neither UTF-8 nor UTF-16 with its byte-order mark.
     """
     if not waited_for and is_named_pipe(path):
         raise UsageError(f"{str(path)!r} is a pipe; save what it gives as a file first")
@@ -144,7 +145,7 @@ def text_of_file(path: pathlib.Path, most_bytes: int = MOST_BYTES, waited_for: b
         data = file.read(most_bytes + 1)
     if len(data) > most_bytes:
         raise UsageError(f"{str(path)!r} is longer than {most_bytes} bytes")
-    return data.decode("utf-8-sig")
+    return decoded(data)
 
 
 def read_document(text: str, file: str) -> Document:
@@ -377,7 +378,10 @@ class _Reader:
 
 
 def assignment(
-    option: str, text: str, takes_text: Callable[[str], bool] = lambda _: False
+    option: str,
+    text: str,
+    takes_text: Callable[[str], bool] = lambda _: False,
+    takes_paths: Callable[[str], bool] = lambda _: False,
 ) -> tuple[str, Any]:
     """Return name and value of ``name=value``, the value read as YAML.
 
@@ -387,6 +391,9 @@ def assignment(
     takes_text : callable
         Whether a setting of some name may be any text: what is no YAML, such as ``%H:%M`` or
         ``#3``, is taken as it is typed there.
+    takes_paths : callable
+        Whether a setting of some name is a path or several: what YAML reads as no text, such as
+        ``D:`` or ``2024``, is taken as it is typed there.
 
     Raises
     ------
@@ -406,4 +413,7 @@ def assignment(
         raise UsageError(f"{option} {text}: a comment of YAML; put a text in quotes")
     if document.problems:
         raise UsageError(f"{option} {text}: {document.problems[0].message}")
+    is_written = value.lstrip().startswith("{") or isinstance(document.data, str | list | None)
+    if not is_written and takes_paths(name.strip()):
+        return name.strip(), value.strip()
     return name.strip(), document.data

@@ -79,6 +79,12 @@ def takes_text(signature: Signature, name: str) -> bool:
     return str in kinds and kinds <= {str, Path, type(None)}
 
 
+def takes_paths(signature: Signature, name: str) -> bool:
+    """Return whether a setting of that name is there, and is a path or several."""
+    kinds = next((set(members(s.annotation)) for s in signature.settings if s.name == name), set())
+    return Path in kinds and kinds <= {str, Path, list[Path], tuple[Path, ...], type(None)}
+
+
 def validate_settings(
     signature: Signature, given: dict[str, Any]
 ) -> tuple[dict[str, Any], list[Trouble]]:

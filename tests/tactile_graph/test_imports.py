@@ -33,6 +33,7 @@ PUBLIC = (
     "tactile_graph.inspect",
     "tactile_graph.provenance",
     "tactile_graph.quantities",
+    "tactile_graph.text_files",
     "tactile_graph.vocabulary",
 )
 """What third parties may use: of steps, of whatever looks into pipelines and their outcomes and

@@ -12,6 +12,7 @@ import yaml
 
 from tactile_graph.errors import DataError, did_you_mean, shown
 from tactile_graph.pipeline.document import quote_for_all
+from tactile_graph.text_files import decoded
 from tactile_graph_classifiers.database.instrument import Instrument
 from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.database.rows import Lesson, Setting
@@ -223,7 +224,7 @@ def read_export(path: Path) -> tuple[Setting, list[Lesson]]:
         If it cannot be read or is no export.
     """
     try:
-        return from_text(path.read_text(encoding="utf-8"), str(path))
+        return from_text(decoded(path.read_bytes()), str(path))
     except UnicodeDecodeError:
         raise DataError(str(path), "is no text file") from None
     except OSError as error:

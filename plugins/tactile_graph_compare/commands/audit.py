@@ -18,6 +18,7 @@ from tactile_graph.cli.arguments import (
 )
 from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.interrupt import code_of, words_of
+from tactile_graph.cli.leading import led
 from tactile_graph.cli.many.options import (
     Shared,
     Sourced,
@@ -48,7 +49,8 @@ Ctrl-C, 143 ended by SIGTERM; what was done is shown.
 @pipeline_argument
 @source_options
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
-              help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
+              help="Only the first N frames, or frames A up to B, counted from 0; steps that keep "
+              "state see the frames before A first.")  # fmt: skip
 @click.option("--sample", type=Finite(0.0, 1.0, min_open=True), default=1.0,
               show_default=True, metavar="SHARE",
               help="Take this share of the frames, drawn at random; all where a step keeps "
@@ -75,7 +77,7 @@ def audit(pipeline: str | None, recordings: tuple[str, ...], span: Span, **optio
     auditor = Auditor(opened, tuple(asked.only), asked.sample, asked.seed)
     if not auditor.guards:
         raise UsageError(f"pipeline {opened.name!r} has no guard and no first_of to audit")
-    shared = shared_for(asked.workers, asked.on, auditor.session.plan, opened)
+    shared = shared_for(asked.workers, asked.on, auditor.session.plan, opened, span.start)
     taking = _Taking(auditor, span, asked.seed, shared)
     interrupted = taking.go()
     found = auditor.summarise(interrupted is not None)
@@ -175,7 +177,11 @@ class _Taking:
             yield
 
     def _frames(self) -> Iterator[Frame]:
-        return self.span.of(self.auditor.pipeline.frames(self.seed, self.report))
+        from tactile_graph.engine.blocks.gathering import Taken, flat
+
+        session = self.auditor.session
+        frames = self.auditor.pipeline.frames(self.seed, self.report)
+        return flat(led(Taken(frames), self.span, session.plan, session.pass_over))
 
     def _by_workers(self, shared: Shared, held: Any) -> Iterator[None]:
         from tactile_graph.cli.say import say

@@ -21,6 +21,7 @@ from tactile_graph.cli.completions import (
 )
 from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.interrupt import code_of, words_of
+from tactile_graph.cli.leading import led
 from tactile_graph.cli.many.options import (
     Shared,
     Sourced,
@@ -75,7 +76,8 @@ Exit codes:
               shell_complete=complete_with,
               help="A setting of the source; can be repeated.")  # fmt: skip
 @click.option("--frames", "span", callback=parse_span, metavar="N|A:B",
-              help="Only the first N frames, or frames A up to B, counted from 0.")  # fmt: skip
+              help="Only the first N frames, or frames A up to B, counted from 0; steps that keep "
+              "state see the frames before A first.")  # fmt: skip
 @click.option("--set", "settings", metavar="NODE.SETTING=VALUE", multiple=True,
               shell_complete=complete_set,
               help="A setting of every pipeline that has it; can be repeated.")  # fmt: skip
@@ -271,7 +273,9 @@ class _Run:
         reference = options.reference and referred(prepared, options.reference)
         self.session: Session = Session(prepared, options.seed, reference=reference)
         self.pipeline = prepared[0].pipeline
-        self.shared = shared_for(options.workers, options.on, self.session.plan, self.pipeline)
+        self.shared = shared_for(
+            options.workers, options.on, self.session.plan, self.pipeline, span.start
+        )
         # What is written to stdout for programs owns it; people are then told on stderr.
         self.people = console(stderr="-" in options.files.values())
         self.stderr = console(stderr=True)
@@ -314,7 +318,10 @@ class _Run:
         return None, None
 
     def _source(self) -> Iterator[Frame]:
-        return self.span.of(self.pipeline.frames(self.options.seed, self.report))
+        from tactile_graph.engine.blocks.gathering import Taken, flat
+
+        frames = self.pipeline.frames(self.options.seed, self.report)
+        return flat(led(Taken(frames), self.span, self.session.plan, self.session.pass_over))
 
     def _noted(self, held: Any) -> Iterator[None]:
         """Note the frames, here or by workers; yield whenever some are done."""

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError, RuleError
 from tactile_graph.files import is_plain
 from tactile_graph.steps.rules import Grid, Quantity
+from tactile_graph.text_files import decoded
 from tactile_graph.wires import Image
 from tactile_graph_filters.nan import finite, refuse_unbounded
 
@@ -136,7 +137,7 @@ def _text(path: Path) -> str:
         data: bytes = file.read(MOST_BYTES + 1)
     if len(data) > MOST_BYTES:
         raise ValueError(_too_much(len(data)))
-    return data.decode("utf-8-sig")
+    return decoded(data)
 
 
 def _too_much(n_bytes: int) -> str:

@@ -14,6 +14,7 @@ from tactile_graph.steps import Spread
 from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.readings.decouple import Decouple
+from tactile_graph_likelihood.any_pad.observed import gap_by
 from tactile_graph_likelihood.by_order.posterior import order_posterior
 from tactile_graph_likelihood.geometry.outlines import FREE, REGULAR
 from tactile_graph_likelihood.settings import DEFAULTS, FootprintSettings, Share
@@ -44,7 +45,9 @@ class FootprintByOrder:
 
     Notes
     -----
-    Of the pad its law is not used, but the circuit that volts are freed of.
+    Of the pad its law is not used, but the circuit that volts are freed of, and its gap where the
+    image's pitch is its own; elements of another pitch have a gap of 0.12 pitches unless ``gap_cm``
+    is given.
 
     Any strictly monotone change of the readings leaves the answer as it is. Volts of a circuit
     whose elements shadow each other are no such change of the load: an image in volts is decoupled
@@ -89,6 +92,7 @@ class FootprintByOrder:
             replace(self.model, noise=replace(noise, sigma=s), precision=0.3) for s in TOUCH_SIGMAS
         ]
         self._touched_from, self._decouple = touched_from, Decouple(pad=settings.pad)
+        self._settings = settings
 
     def __call__(
         self,
@@ -134,8 +138,14 @@ class FootprintByOrder:
             states = np.where(siemens.valid, states, UNKNOWN).astype(np.uint8)
         return _touching(found._replace(logs=siemens.filled(0.0)), states)
 
+    def _gap_cm(self, image: Image) -> float:
+        """Return the gap of an image's elements: as told, or as is usual where the pitch is another
+        than the pad's."""
+        told = self._settings.gap_cm
+        return gap_by(self._settings.known_pad, image.pitch_cm).middle_cm if told is None else told
+
     def _touched_of(self, image: Image, touched: Mask | None) -> Readings:
-        gap = self.model.gap_cm
+        gap = self._gap_cm(image)
         if touched is None:
             return readings_of(image, gap, self._touched_from, 0.0)
         require_same_shape(image=image, touched=touched)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 import re
 from pathlib import Path
 from typing import NamedTuple
 
 from tactile_graph.errors import DataError, PipelineError, UsageError
+from tactile_graph.text_files import decoded
 from tactile_graph_pads.pad import read_file
 
 
@@ -67,7 +69,12 @@ def read_loads(path: Path) -> list[Loaded]:
 
 
 def _csv_rows(path: Path) -> list[tuple[str, object, str]]:
-    with path.open(encoding="utf-8-sig", newline="") as file:
+    try:
+        text = decoded(path.read_bytes())
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise DataError(f"{path}:{line}", "is not UTF-8 text; save it as UTF-8") from None
+    with io.StringIO(text, newline="") as file:
         head = file.readline()
         file.seek(0)
         separator = ";" if ";" in head else "\t" if "\t" in head else ","

@@ -285,7 +285,7 @@ def _of_objects(
     )
     place = _place(objects, seen, places, learned.touched_from, notes)
     notes += _weights_note(objects, curve) + _turn_on_note(seen.turn_on)
-    notes += _unevenness_note(seen.gains, known.loads)
+    notes += _silence_note(seen.silence) + _unevenness_note(seen.gains, known.loads)
     return LearnedPad(
         learned, _elements(rest, seen.silence, seen.gains.gain), rest, seen.silence, seen.gains,
         known.loads, seen.under, curve, place, right, tuple(notes),
@@ -467,6 +467,18 @@ def _weights_note(objects: Stack, curve: ForceCurve | None) -> list[str]:
     return [
         f"In {n_unseen} of {n_loaded} frames of known weight no reading is more than noise: they "
         "weigh 0 g, and do not count among the held-out weights."
+    ]
+
+
+def _silence_note(found: Silence) -> list[str]:
+    n = int(found.dead.sum())
+    if n == 0:
+        return []
+    told = "1 element reads" if n == 1 else f"{n} elements read"
+    return [
+        f"{told} nothing between others that objects press, and {'is' if n == 1 else 'are'} taken "
+        "for dead. So does what nothing ever loads, as an insole under the arch: where that may "
+        "be, press there, and learn again."
     ]
 
 

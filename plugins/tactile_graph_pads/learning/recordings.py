@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError, UsageError, did_you_mean
 from tactile_graph.plugins.registry import installed
 from tactile_graph.steps import Report
+from tactile_graph.text_files import decoded
 from tactile_graph.wires import Frame, Image
 from tactile_graph_pads.same_pad import check_same_pad
 
@@ -174,7 +176,7 @@ def read_places(path: Path, names: Sequence[str]) -> dict[str, dict[int | None, 
         If it is no such file, or names a recording that is not among them.
     """
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
+        with io.StringIO(decoded(path.read_bytes()), newline="") as file:
             head = file.readline()
             file.seek(0)
             separator = max(",;\t", key=head.count)

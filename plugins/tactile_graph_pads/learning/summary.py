@@ -56,11 +56,13 @@ def _states(found: LearnedPad) -> str:
     )  # fmt: skip
     for name in STATES[1:]:
         at = [(int(r), int(c)) for r, c in np.argwhere(state == name)]
+        unsure = name == "dead" and found.silence is not None and found.silence.dead.any()
+        called = "dead, or never loaded" if unsure else name
         if name == "dead" and lines:
-            texts.append(f"{len(at)} dead ({', '.join(lines)} among them)")
+            texts.append(f"{len(at)} {called} ({', '.join(lines)} among them)")
         elif at:
             named = ", ".join(str(a) for a in at[:MOST_NAMED])
-            texts.append(f"{len(at)} {name}: {named}{', …' if len(at) > MOST_NAMED else ''}")
+            texts.append(f"{len(at)} {called}: {named}{', …' if len(at) > MOST_NAMED else ''}")
     return "; ".join(texts)
 
 

@@ -13,6 +13,7 @@ from tactile_graph.cli.pages.listing import complete, file_text
 from tactile_graph.cli.say import hand_over
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins import registry
+from tactile_graph.text_files import decoded
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -42,7 +43,7 @@ def _head(found: registry.Registry, name: str) -> Head:
     offer = found.offer("pipelines", name)
     path = found.path("pipelines", name)
     try:
-        document = read_document(path.read_text(encoding="utf-8-sig"), path.name)
+        document = read_document(decoded(path.read_bytes()), path.name)
     except (OSError, UnicodeDecodeError) as error:
         return Head(name, "", "", offer.plugin.name, f"cannot be read: {error}")
     declared = declare(document)

@@ -5,9 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,11 +22,12 @@ from tactile_graph.cli.arguments import (
 )
 from tactile_graph.cli.endings import SOME_FAILED, exited
 from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
+from tactile_graph.cli.leading import led
 from tactile_graph.cli.many.options import Workers
 from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.plot import IN_A_STRIP, Plot, check_plot, plot_of
 from tactile_graph.cli.targets import check_targets
-from tactile_graph.errors import DataError, RuleError, UsageError, one_of
+from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import is_plain
 from tactile_graph.plugins.registry import installed
 
@@ -304,43 +303,14 @@ class _Run:
 
     def _led(self, frames: Taken) -> Iterator[Frame | FrameStack]:
         """Yield the frames asked for; steps that keep state have seen those before them."""
-        start = self.span.start
-        if self._leads():
-            self._lead(frames.next(start))
-        else:
-            for _ in frames.next(start):
+        if self.decisions is not None:  # of others no state has seen
+            for _ in frames.next(self.span.start):
                 pass
-        yield from frames.next(self.span.most)
+            yield from frames.next(self.span.most)
+        else:
+            runner = self.runner
+            yield from led(frames, self.span, runner.plan, runner, runner.block)
         self.report.counts["frames"] -= frames.n_left  # they came in a stack, and nobody asked
-
-    def _leads(self) -> bool:
-        """Return whether steps are to see the frames before those asked for; say what is done."""
-        plan, start = self.runner.plan, self.span.start
-        keeping = plan.keeping
-        if not start or not keeping or self.decisions is not None:  # of others no state has seen
-            return False
-        say = partial(self.stderr.print, style="yellow", soft_wrap=True)
-        sinks = [i.name for i in plan.nodes if i.node is not None and i.node.is_sink]
-        if sinks:  # they would write what is not asked for
-            say(f"state begins anew at frame {start} ({one_of(keeping)}): {sinks[0]} writes frames")
-            return False
-        say(f"frames before {start} are run first, for state kept by {one_of(keeping)}")
-        return True
-
-    def _lead(self, frames: Iterator[Frame | FrameStack]) -> None:
-        """Show steps that keep state the frames before those asked for."""
-        from tactile_graph.compiled import warm_up
-        from tactile_graph.engine.blocks.gathering import Share, is_long
-        from tactile_graph.wires.frame import Frame
-        from tactile_graph.wires.frame_stack import FrameStack
-
-        if is_long(self.span.start):
-            warm_up()
-        share = Share()
-        for some in frames:
-            for part in share.parts(some) if isinstance(some, FrameStack) else (some,):
-                with suppress(RuleError):  # of another recording, as those of another pad
-                    self.runner(part) if isinstance(part, Frame) else self.runner.block(part)
 
     def _decided(self, frames: Iterator[Frame | FrameStack]) -> Iterator[Frame | FrameStack]:
         """Return the frames that were decided about, if that is asked for."""

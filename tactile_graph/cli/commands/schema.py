@@ -17,6 +17,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, named_from_folder, write_whole
 from tactile_graph.foreign_text import visible
 from tactile_graph.plugins import registry
+from tactile_graph.text_files import decoded
 
 if TYPE_CHECKING:
     from tactile_graph.cli.pages.key_tables import KeyTable
@@ -98,11 +99,11 @@ def _of_file(path: Path) -> dict[str, Any]:
 
 def _text_of(path: Path) -> str:
     try:
-        return path.read_bytes().decode("utf-8")
+        return decoded(path.read_bytes())
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
-        raise UsageError(f"{path} cannot be read: it is no text in UTF-8") from None
+        raise UsageError(f"{path} cannot be read: it is no text in UTF-8 or UTF-16") from None
 
 
 def _install(names: tuple[str, ...]) -> bool:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from tactile_graph.cli.say import say
 from tactile_graph.errors import TactileGraphError, UsageError
 from tactile_graph.plugins import registry
 
@@ -48,6 +50,8 @@ def steps(words: tuple[str, ...], search: bool) -> None:
     elif len(words) == 1 and not search and found.has("steps", words[0]):
         from tactile_graph.cli.pages.step_page import step_page
 
+        if sys.flags.optimize > 1:
+            say("python -OO leaves out what a step says of itself: run without it", err=True)
         for part in step_page(found, words[0]):
             out.print(part)
     else:

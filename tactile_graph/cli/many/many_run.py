@@ -29,7 +29,7 @@ from tactile_graph.engine.tables.table import (
 )
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph.files import uninterrupted, whole_file
-from tactile_graph.many.division import Division, division_of
+from tactile_graph.many.division import Division, division_of, led_to
 from tactile_graph.many.executor_kind import Place
 from tactile_graph.many.feed import Feed, ranges_of
 from tactile_graph.many.in_order import InOrder
@@ -72,10 +72,7 @@ def division_for(asked: Asked) -> tuple[Division, Ranges | None]:
     if asked.output.exporter.joined is None:
         why_not = f"parts of {asked.output.exporter.called} files cannot be joined"
     division = Division({}, why_not=why_not) if why_not else division_of(plan, ranges)
-    if division.by_recording and asked.span.start:
-        why_not = f"steps keep state, and frames before {asked.span.start} are run first"
-        division = Division({}, why_not=why_not)
-    return division, ranges
+    return led_to(asked.span.start, division), ranges
 
 
 @dataclass

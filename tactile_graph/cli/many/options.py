@@ -181,13 +181,15 @@ class Shared(NamedTuple):
         from tactile_graph.many import Feed
 
         ends = (given.span.start, given.span.stop)
-        feed = Feed(given.pipeline, given.seed, given.report, ends, self.division, self.ranges)
+        feed = Feed(
+            given.pipeline, given.seed, given.report, ends, self.division, self.ranges, is_led=True
+        )
         feed.look_through()
         return workers.over_feed(feed)
 
 
 def shared_for(
-    workers: int | None, on: str | None, plan: Plan, pipeline: Pipeline
+    workers: int | None, on: str | None, plan: Plan, pipeline: Pipeline, start: int
 ) -> Shared | None:
     """Return where workers are asked for, and how they have frames of a plan; else say why not.
 
@@ -199,16 +201,18 @@ def shared_for(
         What is run.
     pipeline : Pipeline
         Whose source gives the frames.
+    start : int
+        The first of them that is asked for.
     """
     place = place_asked(workers, on)
     if place is None:
         return None
     from tactile_graph.cli.terminal import console
-    from tactile_graph.many.division import division_of
+    from tactile_graph.many.division import division_of, led_to
     from tactile_graph.many.feed import ranges_of
 
     ranges = ranges_of(pipeline.source) if plan.stateful else None
-    division = division_of(plan, ranges)
+    division = led_to(start, division_of(plan, ranges))
     if division.why_not:
         say_in_one_process(division.why_not)
         return None

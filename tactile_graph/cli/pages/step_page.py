@@ -13,6 +13,7 @@ from tactile_graph.plugins.registry import Registry
 from tactile_graph.steps.inner import written_type
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.steps.signature import Kind, Port, Setting, Signature, strip, type_name
+from tactile_graph.text_files import decoded
 from tactile_graph.wires import Frame, Image
 
 if TYPE_CHECKING:
@@ -170,7 +171,7 @@ def _shipped_use(registry: Registry, step: str) -> tuple[str, str] | None:
 
     for name in registry.names("pipelines"):
         try:
-            text = registry.path("pipelines", name).read_text(encoding="utf-8-sig")
+            text = decoded(registry.path("pipelines", name).read_bytes())
         except (OSError, UnicodeDecodeError):
             continue
         data = read_document(text, name).data

@@ -17,6 +17,7 @@ from tactile_graph.cli.output.data_set import KEY, MANIFEST, manifest_of
 from tactile_graph.cli.output.parquet import pyarrow, units_in
 from tactile_graph.errors import DataError
 from tactile_graph.provenance import sidecar
+from tactile_graph.text_files import encoding_of, open_text
 
 ROWS_A_CHUNK = 16_384
 LEAD = ("frame", "time_s", "label")
@@ -67,14 +68,15 @@ def chunks(path: Path) -> Iterator[Chunk | Lines]:
             start = file.read(4)
         if start == b"PAR1":
             yield from _parquet(path, "")
-        elif start.lstrip()[:1] == b"{":
+        elif start.decode(encoding_of(start), "ignore").lstrip().startswith("{"):
             yield from _json_lines(path)
         else:
             yield from _csv(path)
     except OSError as error:
         raise DataError(str(path), f"cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
-        raise DataError(str(path), f"is no result file: no UTF-8 at byte {error.start}") from error
+        what = f"is no result file: no UTF-8 or UTF-16 at byte {error.start}"
+        raise DataError(str(path), what) from error
 
 
 def _data_set(folder: Path) -> Iterator[Chunk]:
@@ -124,7 +126,7 @@ def _of_arrow(arrow: Any, column: Any) -> Column:
 
 def _csv(path: Path) -> Iterator[Chunk]:
     units = _units_beside(path)
-    with path.open(encoding="utf-8-sig", newline="") as file:
+    with open_text(path, newline="") as file:
         reader = csv.reader(file)
         try:
             names = next(reader, [])
@@ -178,7 +180,7 @@ def _units_beside(path: Path) -> dict[str, str]:
 
 
 def _json_lines(path: Path) -> Iterator[Lines]:
-    with path.open(encoding="utf-8") as file:
+    with open_text(path) as file:
         number = 0
         while texts := list(islice(file, ROWS_A_CHUNK)):
             rows = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import types
@@ -416,6 +417,21 @@ def completed(words: str) -> subprocess.CompletedProcess[str]:
         [Path(sys.executable).with_name("tactile-graph")], env={**os.environ, **asked},
         capture_output=True, text=True, check=False,
     )  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("bash") is None, reason="no bash is there")
+def test_the_line_that_the_reference_gives_has_bash_complete_words() -> None:
+    page = Path(__file__).parents[3] / "docs" / "reference.md"
+    line = next(ln for ln in page.read_text("utf-8").splitlines() if ln.startswith("eval "))
+    folder = Path(sys.executable).parent
+    words = "COMP_WORDS=(tactile-graph run circle-f); COMP_CWORD=2"
+    told = '_tactile_graph_completion tactile-graph; echo "${COMPREPLY[@]}"'
+    got = subprocess.run(
+        ["bash", "-c", f"{line}\n{words}\n{told}"], capture_output=True, text=True, check=True,
+        env={**os.environ, "PATH": f"{folder}{os.pathsep}{os.environ['PATH']}"},
+    )  # fmt: skip
+    assert got.stdout.split() == ["circle-followed", "circle-full"]
 
 
 @pytest.mark.slow

@@ -154,7 +154,7 @@ def test_a_colour_bar_names_the_quantity_and_its_range_holds_for_all_frames() ->
     frames = [Frame.of(np.eye(16) * peak, 1.3, quantity="volt") for peak in (1.0, 3.0)]
     figure = strip_figure(list(circle_demo().stream(frames)), ["frame"])
     (bar,) = scales(figure)
-    assert bar.get_xlabel() == "volt in V"
+    assert bar.get_xlabel() == "V"
     assert bar.get_xlim() == (0.0, 3.0)
     assert [a.images[0].get_clim() for a in cells(figure)] == [(0.0, 3.0)] * 2
 
@@ -262,6 +262,36 @@ def test_a_place_is_marked_and_its_numbers_are_printed() -> None:
     assert words(cell(figure, 0, 1)).startswith("total ")
     assert not cell(figure, 1, 1).lines
     assert words(cell(figure, 1, 1)) == "total 0"
+
+
+class Many(NamedTuple):
+    loaded: bool
+    total: float
+    force_n: float
+    contact_area_cm2: float
+    peak: float
+    n_left_out: int
+    x_cm: float
+    y_cm: float
+
+
+@pytest.mark.slow
+def test_the_numbers_of_a_low_wide_pad_stay_in_its_picture() -> None:
+    def many(image: Image) -> Many:
+        """Return much."""
+        return Many(True, image.total, 12.5, 32.25, image.peak, 0, 8.0, 1.0)
+
+    text = "pipeline: m\nnodes: {m: {step: many, in: frame}}\noutputs: [m]\n"
+    pipeline = loads(text, "m.yaml", registry(many=many))
+    frame = Frame.of(np.eye(4, 32), 0.5, quantity="volt")
+    figure = strip_figure(list(pipeline.stream([frame])), ["frame", "m"])
+    axes = cell(figure, 0, 1)
+    (note,) = axes.texts
+    assert "contact_area_cm2 32.25" in note.get_text()
+    assert note.get_text().endswith("n_left_out 0")
+    box, within = note.get_window_extent(), axes.get_window_extent()
+    assert within.y0 <= box.y0 < box.y1 <= within.y1
+    assert within.x0 <= box.x0 < box.x1 <= within.x1
 
 
 def test_of_many_frames_some_are_shown_spread_evenly_and_the_strip_says_so() -> None:

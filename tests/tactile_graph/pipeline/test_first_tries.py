@@ -118,6 +118,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+def test_a_pipeline_may_be_in_utf_16_as_windows_powershell_writes_it(
+    reg: Any, folder: Path
+) -> None:
+    text = "{pipeline: größe, nodes: {m: {step: pressed, in: frame}}, outputs: [m]}"
+    (folder / "wide.yaml").write_bytes(text.encode("utf-16"))
+    assert load("wide.yaml", reg).name == "größe"
+
+
 @pytest.mark.usefixtures("folder")
 @pytest.mark.parametrize(
     ("name", "message"),

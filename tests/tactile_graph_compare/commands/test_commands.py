@@ -107,6 +107,41 @@ def test_a_span_of_frames_is_told_and_can_be_asked_for_again(hand_made):
     assert "--frames 2:6 " in found[1]
 
 
+class Counting:
+    """How many frames it ran on."""
+
+    def __init__(self) -> None:
+        self.n = 0
+
+    def __call__(self, image: Image) -> int:
+        self.n += 1
+        return self.n
+
+
+COUNTING = """\
+pipeline: counting
+nodes:
+  n: {step: counting, in: frame}
+  peak: {step: peak, in: frame, when: n > 2}
+outputs: [peak]
+"""
+
+
+@pytest.mark.parametrize("command", [("compare", "discs"), ("audit",)])
+def test_steps_that_keep_state_see_the_frames_before_a_part(hand_made, monkeypatch, command):
+    install(monkeypatch, hand_made, COMPARE, steps={"counting": Counting, "peak": chatty})
+    Path("counting.yaml").write_text(COUNTING)
+    words = (*command, "counting.yaml", "--source", "made", "--frames", "2:", "--json", "a.json")
+    got = call(*words)
+    assert got.exit_code == 0, got.output
+    assert "frames before 2 are run first, for state kept by n\n" in got.stderr
+    told = json.loads(Path("a.json").read_text())
+    if command == ("audit",):
+        assert (told["frames"], told["guards"][0]["n_stopped"]) == (2, 0)
+    else:
+        assert (told["frames"]["n"], told["variants"][1]["n_ok"]) == (2, 2)
+
+
 def test_markdown_has_whole_tables(hand_made):
     got = call(*TWO, "--markdown", "-")
     lines = [line for line in got.stdout.splitlines() if line.startswith("|")]

@@ -163,6 +163,18 @@ def test_a_mask_says_what_is_touched_even_of_readings_below_zero():
         step(lowered, Mask(np.zeros((16, 16), bool), image.pitch_cm, image.origin_cm))
 
 
+@pytest.mark.slow
+def test_elements_of_another_pitch_have_a_gap_of_their_own_size():
+    """A told gap of 0.3 cm would leave no element of a fine pad."""
+    step, found = made(FootprintByOrder), []
+    values = drawn(Circle(10.0, 9.5, 4.0), 60.0, np.random.default_rng(0)).values
+    for pitch in (2.5, 0.25):
+        its = step(Image(values, (pitch, pitch), (0.0, 0.0), "raw"))
+        found.append(np.array((its.x_cm, its.y_cm, its.radius_cm)) / pitch)
+    assert found[1] == pytest.approx(found[0], rel=1e-6)
+    assert found[1] == pytest.approx(np.array((10.15, 9.65, 4.0)) / 1.3, abs=0.25)
+
+
 def test_nothing_touched_has_no_answer():
     with pytest.raises(Degenerate, match="no element bears a load"):
         made(FootprintByOrder)(Image(np.zeros((16, 16)), (1.3, 1.3), (-0.15, -0.15), "raw"))

@@ -25,6 +25,11 @@ def test_a_list_from_a_spreadsheet_is_read_as_it_was_saved(tmp_path: Path) -> No
     assert read_loads(path) == [Loaded(tmp_path / "a.npz", 100.5), Loaded(tmp_path / "b.npz", 20.0)]
     path.write_text("load_g\trecording\n7\ta.npz\n")
     assert read_loads(path) == [Loaded(tmp_path / "a.npz", 7.0)]
+    path.write_bytes("recording\tload_g\r\nä.npz\t7\r\n".encode("utf-16"))  # "Unicode text"
+    assert read_loads(path) == [Loaded(tmp_path / "ä.npz", 7.0)]
+    path.write_bytes("recording;load_g\nä.npz;7\n".encode("latin-1"))
+    with pytest.raises(DataError, match=r"l\.csv:2: is not UTF-8 text; save it as UTF-8"):
+        read_loads(path)
     path.write_text("recording;load_g\na.npz;1,500\n")  # of thousands, or of grams?
     with pytest.raises(UsageError, match=r"l\.csv:2: a load is a number .*, got '1,500'"):
         read_loads(path)

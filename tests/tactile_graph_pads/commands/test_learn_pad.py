@@ -72,7 +72,8 @@ def test_with_objects_it_tells_what_is_dead_stuck_and_uneven(tmp_path: Path) -> 
     assert np.corrcoef(gain, np.log(pad.gain)[good])[0, 1] > 0.9
     assert found.learned.turn_on is not None
     assert found.learned.turn_on.reading == pytest.approx(40.0, rel=0.15)
-    assert "row 6 among them" in said
+    assert f"{pad.columns + 2} dead, or never loaded (row 6 among them)" in said
+    assert f"{pad.columns + 2} elements read nothing between others that objects press" in said
     _check_page(page)
 
 

@@ -399,6 +399,26 @@ def test_a_text_setting_takes_what_is_no_yaml_as_it_is_typed(tmp_path, monkeypat
     assert f"--set circle.words={text}: " in call(*words, f"circle.words={text}").stderr
 
 
+@pytest.mark.parametrize("text", ["D:", "D: x", "2024", "yes"])
+def test_a_path_is_taken_as_it_is_typed_whatever_yaml_makes_of_it(tmp_path, monkeypatch, text):
+    seen = []
+
+    def told(mask: Mask, *, file: Path | None = None) -> float:
+        seen.append(file)
+        return mask.area_cm2
+
+    def fed(*, path: Path | list[Path]) -> Iterator[Frame]:
+        seen.append(path)
+        yield Frame.of(np.ones((2, 2)), quantity="volt")
+
+    install(monkeypatch, tmp_path, steps={"told": told, "fed": fed})
+    (tmp_path / "p.yaml").write_text(DISCS.replace("step: disc,", "step: told,"))
+    words = ("run", tmp_path / "p.yaml", "--source", "fed", "--with", f"path={text}", "--set")
+    got = call(*words, f"circle.file={text}")
+    assert got.exit_code == 0, got.output
+    assert seen == [Path(text), Path(text)]
+
+
 def test_without_a_pipeline_run_says_what_there_is():
     got = call("run")
     assert got.exit_code == 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from typing import Annotated, Any
 
@@ -106,6 +107,14 @@ def test_a_step_that_cannot_be_shown_is_an_error_in_words(name, message):
     got = call("steps", name)
     assert got.exit_code == 2
     assert message in got.stderr
+
+
+@pytest.mark.slow
+def test_python_without_docstrings_is_told_to_leave_them_out():
+    words = [sys.executable, "-OO", "-P", "-m", "tactile_graph", "steps", "threshold"]
+    got = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert got.stderr == "python -OO leaves out what a step says of itself: run without it\n"
+    assert got.stdout.startswith("threshold")
 
 
 def test_ranges_are_told_through_unions_and_containers():

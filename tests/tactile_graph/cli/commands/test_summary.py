@@ -149,6 +149,19 @@ def test_all_formats_come_to_the_same() -> None:
     assert "circle.centre_error_cm" in told[0]["quantities"]
 
 
+@pytest.mark.parametrize("name", ["r.csv", "r.jsonl"])
+def test_results_that_powershell_sent_to_a_file_come_to_the_same(name: str) -> None:
+    rows = [{"frame": k, "outputs": {"load": {"total": float(k)}}} for k in range(3)]
+    lines = "".join(json.dumps(row) + "\n" for row in rows)
+    path, text = Path(name), CSV if name == "r.csv" else lines
+    path.write_text(text)
+    told = call("summary", name).stdout
+    path.write_text(text, encoding="utf-16")
+    got = call("summary", name)
+    assert got.exit_code == 0, got.stderr
+    assert got.stdout == told
+
+
 def test_what_was_skipped_and_items_of_lists_are_told_of_json_lines() -> None:
     rows = [
         {"frame": 0, "outputs": {"c": {"skipped": "empty", "origin": "c"}, "n": 3}},

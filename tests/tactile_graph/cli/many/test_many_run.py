@@ -202,6 +202,33 @@ def test_a_part_has_the_state_that_all_frames_before_it_left(folder: Path, name:
         assert not more or ("in one process" in said) == (name == "endless")
 
 
+GUARDED = """
+pipeline: guarded
+about: Asks for nothing where less lies there than in the last few frames
+nodes:
+  mean: {step: lately, in: frame, with: {frames: 4}}
+  image: {step: deadly, in: frame, when: mean > frame.image.total}
+outputs: [image]
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("more", [(), ("--workers", "2")], ids=["one process", "two workers"])
+def test_a_part_of_an_audit_has_the_state_that_frames_before_it_left(
+    folder: Path, more: tuple[str, ...]
+) -> None:
+    (folder / "guarded.yaml").write_text(GUARDED)
+
+    def n_stopped(frames: str) -> int:
+        words = ("guarded.yaml", "a.zarr", "--frames", frames, "--json", "g.json")
+        got = ran_here(folder, "audit", *words, *more)
+        assert got.returncode == 0, got.stderr
+        assert "in one process" not in got.stderr
+        return int(json.loads((folder / "g.json").read_text())["guards"][0]["n_stopped"])
+
+    assert n_stopped("0:405") + n_stopped("405:600") == n_stopped("0:600")
+
+
 @pytest.mark.slow
 def test_state_and_garbage_go_in_one_process_and_are_told(folder: Path) -> None:
     """Where frames are left out, those behind have other places, and so has what is remembered."""
