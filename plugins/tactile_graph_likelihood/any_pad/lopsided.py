@@ -64,13 +64,32 @@ def lopsided(kind: int, p: Values, grid: Values, states: States) -> float:
     """
     rows, columns = states.shape
     box = window(kind, 0, p, grid, rows, columns, FARTHEST * grid[2])
+    matrix, root = np.zeros((TERMS, TERMS)), np.zeros((TERMS, TERMS))
+    right, terms = np.zeros(TERMS), np.ones(TERMS)
+    inside, missed = _sum_up(kind, p, grid, states, box, matrix, right)
+    if inside < FEWEST or missed < MISSED or not cholesky(matrix, root):
+        return 0.0
+    squared_length(root, right, terms)
+    explained = 0.0
+    for k in range(SIDELESS, TERMS):
+        explained += terms[k] * terms[k]
+    return math.sqrt(2.0 * explained) / STRAY - math.sqrt(2.0 * (TERMS - SIDELESS) - 1.0)
+
+
+@compiled_as_is
+def _sum_up(
+    kind: int, p: Values, grid: Values, states: States, box: Box, matrix: Values, right: Values
+) -> tuple[int, int]:
+    """Return how many elements lie inside, and how many are missed; add up what these regress on.
+
+    Of ``matrix``, sums of the terms' products, the lower half is written; ``right`` are those with
+    what is missed.
+    """
     row_reads, column_reads = _reading_lines(states, box)
     a, b, cos, sin = p[2], p[2], 1.0, 0.0
     if kind != _DISC:
         b, cos, sin = p[3], math.cos(p[4]), math.sin(p[4])
-    per_pitch = min(a, b) / grid[2]
-    matrix, root = np.zeros((TERMS, TERMS)), np.zeros((TERMS, TERMS))
-    right, terms = np.zeros(TERMS), np.ones(TERMS)
+    per_pitch, terms = min(a, b) / grid[2], np.ones(TERMS)
     inside = missed = 0
     for r in range(box[2]):
         if _is_dead(row_reads, r):
@@ -99,13 +118,7 @@ def lopsided(kind: int, p: Values, grid: Values, states: States) -> float:
                 right[k] += terms[k] * its
                 for m in range(k + 1):
                     matrix[k, m] += terms[k] * terms[m]
-    if inside < FEWEST or missed < MISSED or not cholesky(matrix, root):
-        return 0.0
-    squared_length(root, right, terms)
-    explained = 0.0
-    for k in range(SIDELESS, TERMS):
-        explained += terms[k] * terms[k]
-    return math.sqrt(2.0 * explained) / STRAY - math.sqrt(2.0 * (TERMS - SIDELESS) - 1.0)
+    return inside, missed
 
 
 @compiled_as_is

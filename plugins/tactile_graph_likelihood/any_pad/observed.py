@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import Grid, require_square
 from tactile_graph.wires import Image
 from tactile_graph_filters.readings.dead_below import without_dead
-from tactile_graph_likelihood.any_pad.above_noise import EVERY, SHOWS, risen
+from tactile_graph_likelihood.any_pad.above_noise import EVERY, SHOWS, Risen, risen
 from tactile_graph_likelihood.any_pad.filtered import is_filtered
 from tactile_graph_likelihood.any_pad.learned_pad import LAWFUL
 from tactile_graph_likelihood.any_pad.shown import (
@@ -53,6 +53,18 @@ MISFIT = 1e-3
 """Relative misfit of a circuit's inverse from which on volts are not that circuit's."""
 
 
+class _Loads(NamedTuple):
+    """Loads, the load that each would have shown as its least, and which are known, and show.
+
+    The second has one row where columns are alike.
+    """
+
+    loads: Values
+    least: Values
+    known: NDArray[np.bool_]
+    shows: NDArray[np.bool_]
+
+
 def observed(
     image: Image, pad: Pad, gap_cm: float | None = None, *, evened: bool = True
 ) -> Readings:
@@ -90,7 +102,6 @@ def observed(
     Degenerate
         If nothing shows.
     """
-    across, down = image.pitch_cm
     require_square(image, NEARLY)
     gap = None
     if gap_cm is None:
@@ -99,44 +110,12 @@ def observed(
     grid = grid_of(image, gap_cm)
     if pad.learned is None:
         image = without_dead(image)
-    above, least, shows, zero, its = risen(image, pad)
-    if not above.size:
+    rise = risen(image, pad)
+    if not rise.above.size:
         raise Degenerate("the image has no element: no outline fits")
-    loads, least_loads, known, shows = _loads(image, above, least, shows, pad)
-    if image.valid is not None:
-        known = _both(known, image.valid)
-    if its is not None:
-        known = _both(known, its.good)
-        if evened:
-            loads, least_loads = loads / its.gain, least_loads / its.gain
-    seen, floor = shown_loads.direct(loads, least_loads, shows, known)
-    if not seen.size:
-        raise Degenerate("no reading rises above the noise: no outline fits")
-    turn_on, told = None, -math.inf
-    if image.quantity in LAWFUL and pad.law.turn_on_g > 0.0:
-        hidden = least_loads.flatten()
-        hidden.sort()
-        turn_on = _turn_on(pad, float(hidden[len(hidden) // 2]))
-        told = turn_on.log_load
-    logs_seen = np.log(seen)
-    ordered = logs_seen.copy()
-    ordered.sort()
-    (edge, ceiling), logs, states = told_of_elements.direct(
-        logs_seen, ordered, np.log(floor), shows, known, told
-    )
-    filtered = False
-    # A pad that was learned knows its images as they come.
-    if its is None and isinstance(least, float):
-        values = np.ascontiguousarray(image.values, dtype=np.float64)
-        values.setflags(write=False)
-        filtered = is_filtered.direct(values, states, zero, least)
-    found = Readings(grid, logs, states, seen.size, down / across, edge, turn_on, filtered=filtered)
+    found = _readings(image, pad, grid, rise, _known_loads(image, pad, rise, evened))
     if found.is_wide:
         return uniform(found)
-    if ceiling < math.inf:
-        unheld = logs.copy()
-        unheld[found.shows] = logs_seen
-        found = found._replace(unheld=unheld, noise=float(np.median(least_loads)) / SHOWS)
     unsure_cm = UNSCALED_STD * float(grid[2]) if image.quantity in UNSCALED else 0.0
     return found._replace(gap=gap, length_std_cm=unsure_cm)
 
@@ -157,6 +136,47 @@ def gap_by(pad: Pad, pitch_cm: tuple[float, float]) -> Gap:
     return Gap(GAP * pitch, GAP_STD * pitch, False)
 
 
+def _readings(image: Image, pad: Pad, grid: Values, rise: Risen, told: _Loads) -> Readings:
+    """Return what is seen of an image by its loads, its gap left open."""
+    loads, least_loads, known, shows = told
+    seen, floor = shown_loads.direct(loads, least_loads, shows, known)
+    if not seen.size:
+        raise Degenerate("no reading rises above the noise: no outline fits")
+    turn_on = _turn_on(pad, least_loads) if image.quantity in LAWFUL else None
+    logs_seen = np.log(seen)
+    ordered = logs_seen.copy()
+    ordered.sort()
+    (edge, ceiling), logs, states = told_of_elements.direct(
+        logs_seen, ordered, np.log(floor), shows, known,
+        -math.inf if turn_on is None else turn_on.log_load,
+    )  # fmt: skip
+    filtered = False
+    # A pad that was learned knows its images as they come.
+    if rise.taught is None and isinstance(rise.least, float):
+        values = np.ascontiguousarray(image.values, dtype=np.float64)
+        values.setflags(write=False)
+        filtered = is_filtered.direct(values, states, rise.zero, rise.least)
+    across, down = image.pitch_cm
+    found = Readings(grid, logs, states, seen.size, down / across, edge, turn_on, filtered=filtered)
+    if ceiling < math.inf and not found.is_wide:
+        unheld = logs.copy()
+        unheld[found.shows] = logs_seen
+        found = found._replace(unheld=unheld, noise=float(np.median(least_loads)) / SHOWS)
+    return found
+
+
+def _known_loads(image: Image, pad: Pad, rise: Risen, evened: bool) -> _Loads:
+    """Return loads, of the elements that are valid and good alone, over the gains of these."""
+    loads, least_loads, known, shows = _loads(image, rise.above, rise.least, rise.shows, pad)
+    if image.valid is not None:
+        known = _both(known, image.valid)
+    if (its := rise.taught) is not None:
+        known = _both(known, its.good)
+        if evened:
+            loads, least_loads = loads / its.gain, least_loads / its.gain
+    return _Loads(loads, least_loads, known, shows)
+
+
 def _both(known: NDArray[np.bool_], also: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return the elements that count by both; kernels take them as frames hold them."""
     both = np.array(also, order="C") if known is EVERY else np.ascontiguousarray(known & also)
@@ -164,27 +184,32 @@ def _both(known: NDArray[np.bool_], also: NDArray[np.bool_]) -> NDArray[np.bool_
     return both
 
 
-def _turn_on(pad: Pad, hidden_g: float) -> TurnOn:
+def _turn_on(pad: Pad, least_loads: Values) -> TurnOn | None:
     """Return what is told of a law at its least loads, with the load that noise hides."""
     law = pad.law
+    if not law.turn_on_g > 0.0:
+        return None
+    ordered = least_loads.flatten()
+    ordered.sort()
+    hidden_g = float(ordered[len(ordered) // 2])
     arm, hidden = math.log(law.load_g / law.turn_on_g), math.log(max(hidden_g, LEAST))
     return TurnOn(math.log(law.turn_on_g), law.turn_on_bend / law.power, arm, hidden)
 
 
 def _loads(
     image: Image, above: Values, least: float | Values, shows: NDArray[np.bool_], pad: Pad
-) -> tuple[Values, Values, NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return loads, the load that each element would have shown as ``least``, and what is possible.
+) -> _Loads:
+    """Return loads, those that ``least`` come to, what is possible, and what shows.
 
-    The second has one row where columns are alike. What has no law is its own load; so are volts
-    that are not the circuit's. Last comes what ``shows`` that is no ghost.
+    What has no law is its own load; so are volts that are not the circuit's. Last comes what
+    ``shows`` that is no ghost.
     """
     least_each = np.array([[least]]) if isinstance(least, float) else least
     if image.quantity == "siemens":
         loads = pad.law.load_of(above)
         possible = np.isfinite(loads)
         possible.setflags(write=False)
-        return loads, pad.law.load_of(least_each), possible, shows
+        return _Loads(loads, pad.law.load_of(least_each), possible, shows)
     if image.quantity == "volt":
         found = pad.circuit.inverse(above / pad.circuit.supply_v)
         if found.residual <= MISFIT:
@@ -193,14 +218,14 @@ def _loads(
             )
             if believed:
                 possible.setflags(write=False)
-                return loads, least_loads, possible, shows
+                return _Loads(loads, least_loads, possible, shows)
         elif (behind := _behind_noise(above, least_each, found, image.valid, pad)) is not None:
             siemens, least_s = behind
             loads = pad.law.load_of(siemens)
             possible = np.isfinite(loads)
             possible.setflags(write=False)
-            return loads, pad.law.load_of(least_s), possible, shows & (siemens > least_s)
-    return above, least_each, EVERY, shows
+            return _Loads(loads, pad.law.load_of(least_s), possible, shows & (siemens > least_s))
+    return _Loads(above, least_each, EVERY, shows)
 
 
 def _behind_noise(

@@ -40,7 +40,6 @@ from tactile_graph_likelihood.single.information import (
     Score,
     add_outer,
     add_score,
-    mirror,
     number_of_contrast,
     scatter_of,
     score_of,
@@ -150,7 +149,6 @@ def information_by_rim(problem: Problem, whole: CoveredWhole, p: Values, out: In
     if its.recorded:
         total = summed(total, _score_of_covered(whole, load, noise[LEAST], scatter), 1.0)
     add_score(problem, total, out)
-    mirror(out.matrix)
 
 
 @compiled_as_is

@@ -34,6 +34,7 @@ from tactile_graph_likelihood.single.information import (
 )
 from tactile_graph_likelihood.single.load_shares import foam_margin, shares_around
 from tactile_graph_likelihood.single.log_posterior import LN_TWO_PI
+from tactile_graph_likelihood.single.pressure_slopes import Laid
 from tactile_graph_likelihood.single.problem import Places
 
 NONE_ESTIMATED = np.zeros(0, np.int64)
@@ -227,10 +228,10 @@ def slopes(problem: JointProblem, outlines: Outlines, out: Information) -> float
             continue
         scale, r, c = math.exp(points[k, first]), box[0] - row, box[1] - column
         steep = np.zeros((first, box[2], box[3]))
+        laid = Laid(kind, n, points[k], grid, noise, box)
         here, _ = shares_with_slopes(
-            kind, n, points[k], grid, noise, box, problem.states.shape[0],
-            problem.states.shape[1], NONE_ESTIMATED, steep,
-        )  # fmt: skip
+            laid, problem.states.shape[0], problem.states.shape[1], NONE_ESTIMATED, steep
+        )
         for i in range(box[2]):
             for j in range(box[3]):
                 own[k, r + i, c + j] = here[i, j]

@@ -38,7 +38,7 @@ from tactile_graph_likelihood.single.load_shares import (
     shares_of,
 )
 from tactile_graph_likelihood.single.log_posterior import noise_at
-from tactile_graph_likelihood.single.pressure_slopes import is_pressed, press_with_slopes
+from tactile_graph_likelihood.single.pressure_slopes import Laid, is_pressed, press_with_slopes
 from tactile_graph_likelihood.single.problem import Places, Problem
 
 STEP = 0.02  # of a pitch: over which coverage is differenced
@@ -157,7 +157,10 @@ def number_of_contrast(problem: Problem) -> int:
 
 @compiled_as_is
 def add_score(problem: Problem, score: Score, out: Information) -> None:
-    """Add what readings say of the load, where nothing else moves it, and of their scatter."""
+    """Add what readings say of the load, where nothing else moves it, and of their scatter.
+
+    With that the matrix is done: its upper half is written as well.
+    """
     first, estimated = unknowns(problem.kind, problem.corners), problem.estimated
     slope, matrix = out.slope, out.matrix
     slope[first] += score.load
@@ -170,6 +173,7 @@ def add_score(problem: Problem, score: Score, out: Information) -> None:
         elif estimated[k] == VOIDS:
             slope[m] += score.voids
             matrix[m, m] += score.voids_information
+    mirror(matrix)
 
 
 @compiled_as_is
@@ -203,19 +207,20 @@ def mirror(matrix: Values) -> None:
 
 
 @compiled_as_is
-def _rises(
-    problem: Problem, p: Values, noise: Values, box: Box, moving: int
-) -> tuple[Values, Values]:
+def _rises(problem: Problem, p: Values, noise: Values, box: Box) -> tuple[Values, Values]:
     """Return shares of a window, and their slope along a point's first numbers, (N, rows, cols).
 
-    That many, ``moving``, bring another load to elements.
+    Those are all up to the last that brings another load to elements.
     """
     kind, corners, grid, estimated = problem.kind, problem.corners, problem.grid, problem.estimated
     first, (rows, columns) = unknowns(kind, corners), problem.states.shape
+    moving = first + 1
+    for k in range(estimated.shape[0]):
+        if estimated[k] not in (SIGMA, VOIDS):
+            moving = first + 2 + k
     rise = np.zeros((moving, box[2], box[3]))
-    share, pressed = shares_with_slopes(
-        kind, corners, p, grid, noise, box, rows, columns, estimated, rise
-    )
+    laid = Laid(kind, corners, p, grid, noise, box)
+    share, pressed = shares_with_slopes(laid, rows, columns, estimated, rise)
     for k in range(estimated.shape[0]):
         place = estimated[k]
         if place == FOAM:
@@ -231,19 +236,19 @@ def _rises(
 
 @compiled_as_is
 def shares_with_slopes(
-    kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, rows: int,
-    columns: int, estimated: Places, rise: Values,
-) -> tuple[Values, Values]:  # fmt: skip
+    laid: Laid, rows: int, columns: int, estimated: Places, rise: Values
+) -> tuple[Values, Values]:
     """Return `load_shares.shares_of`, with foam and without; write slopes along a point's numbers.
 
     Those of the outline, and of the pressure where coverage has exact ones; others are differenced.
     ``rise`` is zeros, shape (N, rows, cols) of the box.
     """
+    kind, corners, p, grid, noise, box = laid
     first, steps = unknowns(kind, corners), steps_of(kind, corners, p, grid)
     if has_slopes(kind):
         share = covered_with_slopes(kind, p, grid, box, rise)
         if not is_even(noise) or is_pressed(estimated):
-            press_with_slopes(kind, corners, p, grid, noise, box, estimated, steps, share, rise)
+            press_with_slopes(laid, estimated, steps, share, rise)
         if noise[FOAM] <= 0.0:
             return share, share
         for k in range(rise.shape[0]):
@@ -285,24 +290,18 @@ def information(problem: Problem, p: Values, out: Information) -> float:
     -----
     With mu the logarithm of an element's expected load, a touched one adds its chance of being
     no stray over sigma**2 times the outer product of the slopes of mu, an untouched one its
-    squared score: positive whatever was read. Coverage of round outlines and rectangles has
-    its exact slope, that of others is differenced over 0.02 of a pitch, as is the pressure.
+    squared score: positive whatever was read. Slopes are those of `shares_with_slopes`.
     """
     kind, grid, states, logs = problem.kind, problem.grid, problem.states, problem.logs
     first, noise = unknowns(kind, problem.corners), noise_at(problem, p)
     margin = foam_margin(grid, noise) + grid[2] * STEP
     box = window(kind, problem.corners, p, grid, states.shape[0], states.shape[1], margin)
-    out.slope[:] = 0.0
-    out.matrix[:] = 0.0
+    out.slope[:] = out.matrix[:] = 0.0
     if box[2] <= 0 or box[3] <= 0:
         return 0.0
-    row, column, load, own = box[0], box[1], p[first], noise[LEAST]
-    power, by_power, moving = noise[CONTRAST], number_of_contrast(problem), first + 1
-    for k in range(problem.estimated.shape[0]):
-        if problem.estimated[k] not in (SIGMA, VOIDS):
-            moving = first + 2 + k
-    share, rise = _rises(problem, p, noise, box, moving)
-    scatter, total, along = scatter_of(noise), NO_SCORE, np.zeros(moving)
+    row, column, load, power = box[0], box[1], p[first], noise[CONTRAST]
+    by_power, (share, rise) = number_of_contrast(problem), _rises(problem, p, noise, box)
+    scatter, total, along = scatter_of(noise), NO_SCORE, np.zeros(rise.shape[0])
     sliver, unfelt, odds, found = SLIVER ** (1.0 / power), UNFELT * scatter.sigma, 1.0, 0.0
     for i in range(box[2]):
         for j in range(box[3]):
@@ -310,7 +309,7 @@ def information(problem: Problem, p: Values, out: Information) -> float:
             if its <= 0.0 or state == UNKNOWN:
                 continue
             log_share = 0.0 if its == 1.0 else math.log(its)
-            log = own if state == OFF else logs[row + i, column + j]
+            log = noise[LEAST] if state == OFF else logs[row + i, column + j]
             mu = load + power * log_share
             if state in (OFF, UNDER) and mu - log < unfelt:
                 continue
@@ -320,7 +319,7 @@ def information(problem: Problem, p: Values, out: Information) -> float:
                 found += math.log(odds)
                 odds = 1.0
             steep, per_share = power / max(its, sliver), power / its
-            for k in range(moving):
+            for k in range(rise.shape[0]):
                 along[k] = (steep if k < first else per_share) * rise[k, i, j]
                 moves = moves or along[k] != 0.0
             if moves:
@@ -331,7 +330,6 @@ def information(problem: Problem, p: Values, out: Information) -> float:
                 score = without_load(score)
             total = summed(total, score, 1.0)
     add_score(problem, total, out)
-    mirror(out.matrix)
     return found + math.log(odds)
 
 

@@ -23,6 +23,20 @@ from tactile_graph_likelihood.single.load_shares import (
 from tactile_graph_likelihood.single.problem import Places
 
 
+class Laid(NamedTuple):
+    """An outline, what its pressure is told by, and the window of a grid that it is laid on.
+
+    All as in `load_shares.press`.
+    """
+
+    kind: int
+    corners: int
+    p: Values
+    grid: Values
+    noise: Values
+    box: Box
+
+
 class Pressed(NamedTuple):
     """What the pressure is on each element of a window, and how it came about, (rows, columns).
 
@@ -51,15 +65,13 @@ def is_pressed(estimated: Places) -> bool:
 
 @compiled_as_is
 def press_with_slopes(
-    kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, estimated: Places,
-    steps: Values, share: Values, rise: Values,
-) -> None:  # fmt: skip
+    laid: Laid, estimated: Places, steps: Values, share: Values, rise: Values
+) -> None:
     """Weigh coverage and its slopes, in place, by the pressure; write slopes along its own numbers.
 
     Parameters
     ----------
-    kind, corners, p, grid, noise, box
-        As in `load_shares.press`.
+    laid : Laid
     estimated : ndarray of int, shape (M,)
         As in `Problem`.
     steps : ndarray, shape (N,)
@@ -69,26 +81,27 @@ def press_with_slopes(
     rise : ndarray, shape (N + 1 + M or fewer, rows, columns)
         Its slopes; changed.
     """
-    pressed = _pressed(kind, corners, p, grid, noise, box, share)
+    p, noise = laid.p, laid.noise
+    pressed = _pressed(laid, share)
     for k in range(estimated.shape[0]):
         place, along = estimated[k], steps.shape[0] + 1 + k
         if place == FALL and LEAST_FALL <= noise[FALL] <= MOST_FALL:
             rise[along] = share * pressed.by_fall
         elif place in (LEAN_X, LEAN_Y):
-            _lean_more(kind, corners, p, grid, box, place, share, pressed.times, rise[along])
+            _lean_more(laid, place, share, pressed.times, rise[along])
     at = p.copy()
+    moved = Laid(laid.kind, laid.corners, at, laid.grid, noise, laid.box)
     for k in range(steps.shape[0]):
         at[k] += steps[k]
-        _move(kind, corners, at, grid, noise, box, share, pressed, steps[k], rise[k])
+        _move(moved, share, pressed, steps[k], rise[k])
         at[k] = p[k]
     share *= pressed.times
 
 
 @compiled_as_is
-def _pressed(
-    kind: int, corners: int, p: Values, grid: Values, noise: Values, box: Box, share: Values
-) -> Pressed:
+def _pressed(laid: Laid, share: Values) -> Pressed:
     """Return the pressure on each element that is covered."""
+    kind, corners, p, grid, noise, box = laid
     all_of = np.zeros((7, share.shape[0], share.shape[1]))
     found = Pressed(
         all_of[0], all_of[1], all_of[2], all_of[3], all_of[4], all_of[5], all_of[6]
@@ -116,11 +129,9 @@ def _pressed(
 
 
 @compiled_as_is
-def _move(
-    kind: int, corners: int, at: Values, grid: Values, noise: Values, box: Box, share: Values,
-    pressed: Pressed, step: float, rise: Values,
-) -> None:  # fmt: skip
-    """Weigh the slope along a number by the pressure; add how that moves with an outline ``at``."""
+def _move(moved: Laid, share: Values, pressed: Pressed, step: float, rise: Values) -> None:
+    """Weigh the slope along a number by the pressure; add how that moves with the outline."""
+    kind, corners, at, grid, noise, box = moved
     times, tilts, fars, steeps, by_far, by_steep, _ = pressed
     lean_x, lean_y = leans_per_cm(kind, corners, at, noise)
     centre_x, centre_y, lines = gauge(kind, corners, at)
@@ -142,11 +153,9 @@ def _move(
 
 
 @compiled_as_is
-def _lean_more(
-    kind: int, corners: int, p: Values, grid: Values, box: Box, place: int, share: Values,
-    times: Values, rise: Values,
-) -> None:  # fmt: skip
+def _lean_more(laid: Laid, place: int, share: Values, times: Values, rise: Values) -> None:
     """Write the slope along a lean, to the right or down as ``place`` says."""
+    kind, corners, p, grid, _, box = laid
     one = np.zeros(LEAN_Y + 1)
     one[place] = 1.0
     right, down = leans_per_cm(kind, corners, p, one)

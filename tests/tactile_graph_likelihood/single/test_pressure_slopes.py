@@ -19,7 +19,7 @@ from tactile_graph_likelihood.single.element_terms import (
 )
 from tactile_graph_likelihood.single.information import shares_with_slopes
 from tactile_graph_likelihood.single.load_shares import mean_pressure, shares_of
-from tactile_graph_likelihood.single.pressure_slopes import mean_pressure_with_slopes
+from tactile_graph_likelihood.single.pressure_slopes import Laid, mean_pressure_with_slopes
 
 pytestmark = pytest.mark.usefixtures("warm_kernels")
 
@@ -72,9 +72,8 @@ def test_loads_grow_as_they_are_said_to(outline: str, pressure: str) -> None:
     p, noise = np.array([*numbers, math.log(60.0)]), noise_of(PRESSURES[pressure])
     places = np.array([k for k in PRESSURES[pressure] if k != FOAM])
     rise = np.zeros((len(p) + len(places), *SHAPE))
-    share, _ = shares_with_slopes.compiled(
-        kind, 0, p, GRID, noise, BOX, *SHAPE, places, rise
-    )  # fmt: skip
+    laid = Laid(kind, 0, p, GRID, noise, BOX)
+    share, _ = shares_with_slopes.compiled(laid, *SHAPE, places, rise)
     np.testing.assert_allclose(share, shares_at(kind, p, noise), atol=1e-12)
     slopes = [slope_along(kind, p, noise, p, k) for k in range(len(numbers))]
     # Past a rectangle's diagonal another side is nearer, and a rim's own slope is endless.
@@ -90,7 +89,8 @@ def test_loads_grow_as_they_are_said_to(outline: str, pressure: str) -> None:
 def test_beyond_what_a_face_may_fall_nothing_grows() -> None:
     p, rise = np.array([10.3, 9.7, 4.1, 4.0]), np.zeros((5, *SHAPE))
     noise = noise_of({FALL: 9.0})
-    plainly(shares_with_slopes)(DISC, 0, p, GRID, noise, BOX, *SHAPE, np.array([FALL]), rise)
+    laid = Laid(DISC, 0, p, GRID, noise, BOX)
+    plainly(shares_with_slopes)(laid, *SHAPE, np.array([FALL]), rise)
     assert rise[2].any()
     assert not rise[4].any()
 
