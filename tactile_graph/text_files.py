@@ -31,6 +31,24 @@ def decoded(data: bytes) -> str:
     return data.decode(encoding_of(data))
 
 
+def encoding_with_mark(start: bytes) -> str:
+    """Return a text file's encoding as `encoding_of` does, of a text that keeps its mark."""
+    if start[:2] == BOM_UTF16_LE:
+        return "utf-16-le"
+    return "utf-16-be" if start[:2] == BOM_UTF16_BE else "utf-8"
+
+
+def with_mark(data: bytes) -> str:
+    """Return the text that a file holds with its byte-order mark, to be written as it was.
+
+    Raises
+    ------
+    UnicodeDecodeError
+        If it is not encoded as `encoding_with_mark` tells.
+    """
+    return data.decode(encoding_with_mark(data))
+
+
 def open_text(path: Path, newline: str | None = None) -> TextIO:
     """Open a text file to read from, encoded as `encoding_of` tells.
 

@@ -17,7 +17,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph.files import check_target, named_from_folder, write_whole
 from tactile_graph.foreign_text import visible
 from tactile_graph.plugins import registry
-from tactile_graph.text_files import decoded
+from tactile_graph.text_files import encoding_with_mark, with_mark
 
 if TYPE_CHECKING:
     from tactile_graph.cli.pages.key_tables import KeyTable
@@ -99,7 +99,7 @@ def _of_file(path: Path) -> dict[str, Any]:
 
 def _text_of(path: Path) -> str:
     try:
-        return decoded(path.read_bytes())
+        return with_mark(path.read_bytes())
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
@@ -115,7 +115,7 @@ def _install(names: tuple[str, ...]) -> bool:
     for file, text in lines.items():
         path = editor.write_schema(file, _of_file(file))
         if text != _text_of(file):
-            write_whole(file, text)
+            write_whole(file, text.encode(encoding_with_mark(file.read_bytes())))
         say(f"{file}: its schema is {path}", err=True)
     named = [Path(named_from_folder(file)) for file in files]
     below = [file for file in named if ".." not in file.parts and not file.is_absolute()]

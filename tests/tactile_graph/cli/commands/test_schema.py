@@ -137,6 +137,13 @@ def test_install_finds_a_pipeline_that_begins_with_a_byte_order_mark(mine: Path)
     assert mine.read_text(encoding="utf-8") == "\ufeff" + LINE + MINE
 
 
+def test_install_leaves_a_pipeline_in_the_encoding_it_has(mine: Path) -> None:
+    mine.write_text("\ufeff" + MINE, encoding="utf-16-le")
+    got = call("schema", "--install", str(mine))
+    assert got.exit_code == 0, got.stderr
+    assert mine.read_bytes().decode("utf-16-le") == "\ufeff" + LINE + MINE
+
+
 @pytest.mark.slow
 def test_install_again_takes_up_new_nodes_and_changes_nothing_else(mine: Path) -> None:
     assert call("schema", "--install", "mine.yaml").exit_code == 0
