@@ -143,8 +143,8 @@ class LocateSettings(FootprintSettings):
     ----------
     quick : bool
         Whether the most likely outline will do, with a normal distribution around it: less than
-        half of the time on pads of up to 1024 elements. Pressures other than an even one are looked
-        at where its pattern is clear; a fainter one widens the distribution.
+        half of the time where up to 4096 elements are touched. Pressures other than an even one are
+        looked at where its pattern is clear; a fainter one widens the distribution.
     sampled_above_cm : float, optional
         With ``quick``: the deviation of a disc's centre from which on points around the most likely
         disc are weighed after all, 0 for always. Their mean errs some 5 % less and takes a quarter

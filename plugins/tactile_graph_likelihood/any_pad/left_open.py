@@ -11,7 +11,7 @@ residuals fall by so many deviations; none where they fall by fewer than the sec
 
 PATTERN = 3.0
 """Pattern left over from which on an outline is not taken to press evenly where no pressure is
-looked at: on a large pad, and where a quick answer will do."""
+looked at: on wide outlines, and where a quick answer will do."""
 
 HIDDEN = 0.25
 """Of a pitch: by how much foam, or a face that falls to its rim, moves an edge unseen."""

@@ -126,16 +126,16 @@ class AnyPad:
         return cls(changed(told, noise=noise), 0.0, settings.quick, above_cm, plain, foam_cm)
 
     @cached_property
-    def _on_large_pads(self) -> AnyPad:
+    def _of_wide(self) -> AnyPad:
         return changed(self.told_of_foam, quick=False)
 
     def suited(self, readings: Readings) -> AnyPad:
-        """Return these fits, or those for pads of more than 1024 elements.
+        """Return these fits, or those for more than 4096 touched elements.
 
         They are not quick, and know of the foam that is told, since none is undone there.
         """
-        large = readings.is_wide
-        return self._on_large_pads if large and (self.quick or self.foam_cm > 0.0) else self
+        wide = readings.is_wide
+        return self._of_wide if wide and (self.quick or self.foam_cm > 0.0) else self
 
     @cached_property
     def _kept(self) -> dict[str, Model]:
@@ -197,11 +197,11 @@ class AnyPad:
 
         Where touched elements stand alone away from the others, a disc is first looked for near
         one of these. If strays lie beyond that, the fits know of as many, and there were two more
-        attempts. Not so on pads of more than 1024 elements, nor of an outline with an angle, which
+        attempts. Not so where more than 4096 are touched, nor of an outline with an angle, which
         would rather be caught there.
         """
-        model, large = self._fit(EVEN), readings.is_wide
-        some = None if large or self.told.kind != DISC else without_alone(readings)
+        model, wide = self._fit(EVEN), readings.is_wide
+        some = None if wide or self.told.kind != DISC else without_alone(readings)
         if some is None or (rough := model.likeliest(some)).mode.height == -math.inf:
             return self, model.likeliest(readings)
         if not (strays := self.strays(readings, rough)):
@@ -213,8 +213,8 @@ class AnyPad:
     def cleared(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
         """Return readings free of a limit and a law's improbable bend, of foam and a hollow.
 
-        With their outline, and on elements as large as they tell. Only on pads of up to 1024
-        elements.
+        With their outline, and on elements as large as they tell. Only where up to 4096
+        are touched.
         """
         if readings.is_wide or even.mode.height == -math.inf:
             return readings, even
@@ -300,11 +300,11 @@ class AnyPad:
     def again(self, readings: Readings, even: Likeliest) -> Likeliest:
         """Return what is likelier, near an outline and elsewhere, now that strays are known."""
         near, model = self.near(readings, self.told.point_of(even)), self._fit(EVEN)
-        large = readings.is_wide
-        if large and not near.unsure:
+        wide = readings.is_wide
+        if wide and not near.unsure:
             return near
         found = model.likeliest(readings, near, attempts=MORE)
-        return found if large else among_strays(model, readings, found)
+        return found if wide else among_strays(model, readings, found)
 
     def completed(
         self, readings: Readings, even: Likeliest, alone: bool = True
@@ -323,8 +323,8 @@ class AnyPad:
         Degenerate
             If no outline of this kind is possible.
         """
-        large, model = readings.is_wide, self._fit(EVEN)
-        if not large:
+        wide, model = readings.is_wide, self._fit(EVEN)
+        if not wide:
             even = self.sought(readings, even)
         if readings.touched <= FEW:
             even = around_clump(model, readings, even)
@@ -333,12 +333,12 @@ class AnyPad:
         its = self
         if alone and (strays := self.strays(readings, even)):
             its, even = self.likelier_with(strays, readings, even)
-        elif large and even.unsure:
+        elif wide and even.unsure:
             even = model.likeliest(readings, even, attempts=MORE)
-        if not large:
+        if not wide:
             even = beyond_the_edge(its._fit(EVEN), readings, even)
         found = {EVEN: even}
-        asked = [] if large else asked_by([even.fit], FIRST, CLEAR if self.quick else self._faint)
+        asked = [] if wide else asked_by([even.fit], FIRST, CLEAR if self.quick else self._faint)
         if asked and "fall" not in asked and has_no_foam(readings):
             asked = [part for part in asked if part != FOAM]  # that of own gains falls to the rim
         hidden = bool(asked) and self.reaches_beyond(readings, even)

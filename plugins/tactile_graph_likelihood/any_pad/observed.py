@@ -90,7 +90,7 @@ def observed(
     -------
     Readings
         Elements whose reading is no more than noise are `UNDER` the load that would have shown in
-        their column; of more than 1024 elements, all show from the same.
+        their column; where more than 4096 are touched, all show from the same.
 
     Raises
     ------
@@ -247,7 +247,7 @@ def _behind_noise(
 
 
 def uniform(readings: Readings) -> Readings:
-    """Return readings whose elements all show from the same load: what large pads' kernels take."""
+    """Return readings whose elements all show from the same load, as wide outlines' kernels ask."""
     hidden = readings.logs[readings.states == UNDER]
     least_log = _median(hidden) if len(hidden) else readings.least_log
     return readings._replace(states=UNIFORM[readings.states], least_log=least_log)

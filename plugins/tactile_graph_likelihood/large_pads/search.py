@@ -1,4 +1,4 @@
-"""The search for the mode on a large pad: through blocks of elements, and by the outline's rim."""
+"""The search for the mode of a wide outline: through blocks of elements, and by its rim."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def attempted_on_large_pad(
     problem: Problem, table: Values, start: Values, attempt: int, least: float, p: Values,
     root: Values,
 ) -> tuple[float, float, GoodnessOfFit]:  # fmt: skip
-    """Do what `search.attempted` does, of a pad of more than 1024 elements."""
+    """Do what `search.attempted` does, where more than 4096 elements are touched."""
     blocks = coarsened(problem)
     given, seen = start[:0], blocks
     if attempt == 0:
@@ -161,7 +161,7 @@ def settled(problem: Problem, p: Values, root: Values) -> float:
     Parameters
     ----------
     problem : Problem
-        Of more than 1024 elements.
+        Of more than 4096 touched elements.
     p, root : ndarray, shape (K,) and (K, K)
         Near the top; written, with the lower root of the information there.
 

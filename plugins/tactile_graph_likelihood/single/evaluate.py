@@ -1,7 +1,7 @@
 """What a search and a sampler ask of a point: element by element, or by the outline's rim.
 
-``whole`` says which. On a pad of up to 1024 elements it is None, and nothing of what large pads
-need is compiled. On a larger one it is a `CoveredWhole`: of no rows where looking at each element
+``whole`` says which. Where up to 4096 elements are touched it is None, and nothing of what wide
+outlines need is compiled. Else it is a `CoveredWhole`: of no rows where looking at each element
 costs no more.
 """
 

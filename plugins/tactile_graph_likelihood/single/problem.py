@@ -15,7 +15,7 @@ from tactile_graph_likelihood.single.element_terms import States
 Places = NDArray[np.int64]
 
 LARGE_PAD = 1024
-"""Elements of a pad beyond which strays are many, and an outline may hold most of them whole."""
+"""Elements of a pad beyond which strays are many, and noise passes for loads."""
 
 
 class Problem(NamedTuple):
