@@ -2,9 +2,9 @@
 
 Run with ``python benchmarks/unknown_pads.py``; ``--shape rectangle`` takes rectangles instead of
 discs, ``--scenes N`` so many of a kind, ``--kinds`` some of the kinds only, ``--markdown FILE``
-writes the tables, ``--told-foam-cm CM`` tells ``locate`` of foam, ``--workers N`` shares the kinds
-among processes (times: measure with one). All
-pipelines are told the thesis' pad; what lies on the bench is one of the kinds of
+writes the tables, ``--told-foam-cm CM`` tells ``locate`` of foam, ``--finer N`` takes pads of N times
+as many rows and columns, ``--workers N`` shares the kinds among processes (times: measure with one).
+All pipelines are told the thesis' pad; what lies on the bench is one of the kinds of
 `second_simulator`, which shares no code with the project's own pads.
 
 The first table has each localiser's mean error of the centre and of the size (the radius; of a
@@ -25,14 +25,14 @@ import argparse
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from by_workers import add_workers, in_order
-from second_simulator import KINDS, MORE_KINDS, Bench, Outline
+from second_simulator import KINDS, MORE_KINDS, Bench, Kind, Outline
 
 from tactile_graph import Circle, Frame, Pipeline, Rectangle, load
 from tactile_graph.compiled import warm_up
@@ -120,14 +120,29 @@ class Asked(NamedTuple):
     shape: str
     n_scenes: int
     seed: int
+    finer: int = 1
+
+
+def finer(kind: Kind, times: int) -> Kind:
+    """Return a kind of pad with elements so many times as fine, whose readings are no smaller."""
+    return replace(
+        kind,
+        rows=times * kind.rows,
+        columns=times * kind.columns,
+        element_cm=kind.element_cm / times,
+        gap_cm=kind.gap_cm / times,
+        discs=tuple((times**2 * weight_g, *sizes) for weight_g, *sizes in kind.discs),
+        rectangles=tuple((times**2 * weight_g, *sizes) for weight_g, *sizes in kind.rectangles),
+    )
 
 
 def frames_of(kind: str, asked: Asked) -> list[Frame]:
     """Return the frames of a kind of pad."""
     rng = np.random.default_rng([asked.seed, *kind.encode()])
     frames: list[Frame] = []
+    pad = finer({**KINDS, **MORE_KINDS}[kind], asked.finer)
     while len(frames) < asked.n_scenes:
-        frames += Bench({**KINDS, **MORE_KINDS}[kind], rng).frames(BENCH_FRAMES, asked.shape)
+        frames += Bench(pad, rng).frames(BENCH_FRAMES, asked.shape)
     return [frame.with_index(i) for i, frame in enumerate(frames[: asked.n_scenes])]
 
 
@@ -216,10 +231,11 @@ def main() -> None:
         "--kinds", nargs="*", choices=[*KINDS, *MORE_KINDS], default=[*KINDS], metavar="KIND"
     )
     parser.add_argument("--told-foam-cm", type=float, help="foam that ``locate`` is told of")
+    parser.add_argument("--finer", type=int, default=1, metavar="N")
     parser.add_argument("--markdown", type=Path)
     add_workers(parser)
     args = parser.parse_args()
-    asked = Asked(args.shape, args.scenes, args.seed)
+    asked = Asked(args.shape, args.scenes, args.seed, args.finer)
     pipelines = [load(name) for name in PIPELINES[asked.shape]]
     if args.told_foam_cm is not None:
         told = {"contact": {"foam_cm": args.told_foam_cm}}
