@@ -37,6 +37,7 @@ from tactile_graph_likelihood.any_pad.posterior import (
     on_any_pad,
     resized,
     stretched,
+    unsized,
     within,
 )
 from tactile_graph_likelihood.any_pad.pressure_chances import (
@@ -77,6 +78,10 @@ would come to, for a quick answer: between two rows of elements nothing holds it
 
 UNSUREST = 2.3
 """The same of a rectangle under a pressure, which has nine unknowns, for any other answer."""
+
+UNSOUGHT = 0.5
+"""By how much a radius or half a side grows with the gap of elements where that is not sought, as
+on wide outlines."""
 
 FEW_POINTS = 64
 """Points in which the posterior of what is rather noise is looked at, as wide as the pad."""
@@ -136,6 +141,8 @@ class _Around:
         )
         if readings.filtered:
             whole = as_filtered(whole, float(readings.grid[2]))
+        if readings.is_wide and readings.gap is not None and not readings.gap.is_told:
+            whole = unsized(whole, UNSOUGHT * readings.gap.std_cm)
         whole = stretched(whole, readings)
         if is_row(readings):
             whole = within(whole, *told.range_cm(readings))

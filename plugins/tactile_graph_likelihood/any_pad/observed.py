@@ -115,7 +115,7 @@ def observed(
         raise Degenerate("the image has no element: no outline fits")
     found = _readings(image, pad, grid, rise, _known_loads(image, pad, rise, evened))
     if found.is_wide:
-        return uniform(found)
+        return uniform(found)._replace(gap=gap)
     unsure_cm = UNSCALED_STD * float(grid[2]) if image.quantity in UNSCALED else 0.0
     return found._replace(gap=gap, length_std_cm=unsure_cm)
 

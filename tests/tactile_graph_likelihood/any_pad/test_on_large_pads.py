@@ -1,23 +1,45 @@
 """Outlines on pads of more than 1024 elements, by a law or a circuit that nobody has told."""
 
+from typing import NamedTuple
+
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter
 
 from tactile_graph import Image, load
 from tactile_graph.wires import Circle
+from tactile_graph_likelihood.any_pad import around
+from tactile_graph_likelihood.any_pad.observed import GAP_STD
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
 SIDE, PITCH_CM, FINE = 40, 0.5, 10
 
 
-def pressed(rng: np.random.Generator, exponent: float) -> tuple[np.ndarray, Circle]:
-    """Return a divider's volts on a pad without gaps, under a disc of 6 to 9 pitches."""
-    radius = PITCH_CM * rng.uniform(6.0, 9.0)
-    x, y = rng.uniform(radius, SIDE * PITCH_CM - radius, 2)
-    places = (np.arange(SIDE * FINE) + 0.5) * PITCH_CM / FINE
+class Pad(NamedTuple):
+    """Elements a side, the part of a pitch that senses, foam on it; and radii of discs."""
+
+    side: int = SIDE
+    sensing: slice = slice(FINE)
+    foam_cells: float = 0.0
+    radii: tuple[float, float] = (6.0, 9.0)
+
+
+PLAIN = Pad()
+
+
+def pressed(
+    rng: np.random.Generator, exponent: float, pad: Pad = PLAIN
+) -> tuple[np.ndarray, Circle]:
+    """Return a divider's volts under a disc."""
+    radius = PITCH_CM * rng.uniform(*pad.radii)
+    x, y = rng.uniform(radius, pad.side * PITCH_CM - radius, 2)
+    places = (np.arange(pad.side * FINE) + 0.5) * PITCH_CM / FINE
     inside = (places - x) ** 2 + (places[:, None] - y) ** 2 <= radius**2
-    share = inside.reshape(SIDE, FINE, SIDE, FINE).mean(axis=(1, 3))
+    inside = inside.reshape(pad.side, FINE, pad.side, FINE)[:, pad.sensing][..., pad.sensing]
+    share = inside.mean(axis=(1, 3))
+    if pad.foam_cells:
+        share = gaussian_filter(share, pad.foam_cells)
     load_g = 400.0 * share * np.exp(0.3 * rng.standard_normal(share.shape))
     load_g *= rng.random(share.shape) > 0.05
     siemens = np.where(load_g > 10.0, (load_g / 100.0) ** exponent / 80e3, 0.0)
@@ -48,3 +70,32 @@ def test_counts_of_a_divider_are_not_flagged_for_its_own_pattern() -> None:
         fits += found.fits
     assert fits >= 11
     assert held >= 9
+
+
+def test_foam_is_undone_as_on_a_small_pad() -> None:
+    pipeline, rng = load("locate-circle"), np.random.default_rng(33)
+    held = fits = errors = 0.0
+    for _ in range(12):
+        volts, true = pressed(rng, 1.463, Pad(foam_cells=0.7))
+        found = pipeline.run(Image(volts, (PITCH_CM,) * 2, quantity="volt"))["circle"]
+        fits += found.fits
+        held += found.posterior.contains(true)
+        errors += abs(found.radius_cm - true.radius_cm) / 12
+    assert fits >= 11
+    assert held >= 9
+    assert errors < 0.12 * PITCH_CM
+
+
+def test_a_wide_outline_knows_that_nobody_told_its_elements_gap(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    pipeline, rng = load("locate-circle"), np.random.default_rng(34)
+    volts, _ = pressed(rng, 1.463, Pad(100, slice(1, FINE - 1), radii=(40.0, 48.0)))
+    assert (volts > 0.01).sum() > 4096
+    image = Image(volts, (PITCH_CM,) * 2, quantity="volt")
+    found = pipeline.run(image)["circle"]
+    monkeypatch.setattr(around, "UNSOUGHT", 0.0)
+    surer = pipeline.run(image)["circle"]
+    more = found.radius_std_cm**2 - surer.radius_std_cm**2
+    assert more == pytest.approx((0.5 * GAP_STD * PITCH_CM) ** 2)
+    assert found.centre_std_cm == surer.centre_std_cm
