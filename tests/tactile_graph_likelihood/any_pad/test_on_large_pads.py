@@ -89,13 +89,14 @@ def test_foam_is_undone_as_on_a_small_pad() -> None:
 def test_a_wide_outline_knows_that_nobody_told_its_elements_gap(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    pipeline, rng = load("locate-circle"), np.random.default_rng(34)
-    volts, _ = pressed(rng, 1.463, Pad(100, slice(1, FINE - 1), radii=(40.0, 48.0)))
+    volts, _ = pressed(
+        np.random.default_rng(34), 1.463, Pad(100, slice(1, FINE - 1), radii=(40.0, 48.0))
+    )
     assert (volts > 0.01).sum() > 4096
     image = Image(volts, (PITCH_CM,) * 2, quantity="volt")
-    found = pipeline.run(image)["circle"]
+    found = load("locate-circle").run(image)["circle"]
     monkeypatch.setattr(around, "UNSOUGHT", 0.0)
-    surer = pipeline.run(image)["circle"]
+    surer = load("locate-circle").run(image)["circle"]
     more = found.radius_std_cm**2 - surer.radius_std_cm**2
     assert more == pytest.approx((0.5 * GAP_STD * PITCH_CM) ** 2)
     assert found.centre_std_cm == surer.centre_std_cm
