@@ -88,6 +88,8 @@ class Kernel(Generic[P, R]):
         it may end the process): a step that has an array from elsewhere asks for its ``dtype``,
         ``ndim`` and ``flags.c_contiguous`` first, for the class of a number, and uses `call` if
         they are others.
+    passes : int
+        As how many passes over the elements handed over a call of the plain loops counts.
     """
 
     def __init__(
@@ -96,6 +98,7 @@ class Kernel(Generic[P, R]):
         self.loops = loops
         self.reference = reference
         self.plain_first = plain_first
+        self.passes = 1
         self.__name__ = reference.__name__
         self.__doc__ = reference.__doc__
         self._entry: Callable[..., R] | None = None
@@ -132,7 +135,7 @@ class Kernel(Generic[P, R]):
     def _enough_to_do(self, args: tuple[Any, ...]) -> bool:
         """Count a call; return whether it is time for machine code."""
         self._calls_left -= 1
-        self._elements_left -= n_elements(args)
+        self._elements_left -= self.passes * n_elements(args)
         return self._calls_left < 0 or self._elements_left < 0
 
     def _noted(self, *args: Any) -> R:

@@ -60,6 +60,13 @@ def test_elements_are_counted_over_the_calls() -> None:
     assert [light(part) for _ in range(5)] == ["plain"] * 4 + ["compiled"]
 
 
+def test_loops_that_are_slow_count_for_as_many_passes() -> None:
+    light = Light()
+    light.passes = 4
+    part = np.empty(SWITCH_AFTER_ELEMENTS // 8)
+    assert [light(part) for _ in range(3)] == ["plain"] * 2 + ["compiled"]
+
+
 def test_arrays_of_records_are_counted() -> None:
     assert Light()((np.empty(SWITCH_AFTER_ELEMENTS), np.empty(1))) == "compiled"
 
