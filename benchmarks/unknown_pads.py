@@ -1,10 +1,10 @@
 """Localisers on pads that nobody described to them, by a simulator of its own.
 
 Run with ``python benchmarks/unknown_pads.py``; ``--shape rectangle`` takes rectangles instead of
-discs, ``--scenes N`` so many of a kind, ``--kinds`` some of the kinds only, ``--markdown FILE``
-writes the tables, ``--told-foam-cm CM`` tells ``locate`` of foam, ``--finer N`` takes pads of N times
-as many rows and columns, ``--workers N`` shares the kinds among processes (times: measure with one).
-All pipelines are told the thesis' pad; what lies on the bench is one of the kinds of
+discs, ``--scenes N`` so many of a kind, ``--kinds`` some of the kinds only, ``--finer N`` pads of N
+times as many rows and columns, ``--markdown FILE`` writes the tables, ``--told-foam-cm CM`` tells
+``locate`` of foam, ``--workers N`` shares the kinds among processes (times: measure with one). All
+pipelines are told the thesis' pad; what lies on the bench is one of the kinds of
 `second_simulator`, which shares no code with the project's own pads.
 
 The first table has each localiser's mean error of the centre and of the size (the radius; of a
