@@ -15,6 +15,7 @@ from tactile_graph.errors import PluginError, did_you_mean, one_of, shown
 from tactile_graph.quantities import unknown_quantity
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.steps.signature import Kind, Setting, Signature, strip, type_name
+from tactile_graph.steps.stacked import stacked_kinds
 
 RULES = ("annotated_types", "pydantic")
 """Packages whose classes, beside a type, are rules that a value must keep."""
@@ -43,6 +44,8 @@ def check_signature(signature: Signature) -> None:
         *_output(signature),
     ):
         raise PluginError(f"step {signature.name!r}: {trouble}")
+    if signature.kind is not Kind.SOURCE:
+        stacked_kinds(signature)
 
 
 def _kinds(signature: Signature) -> Iterator[str]:

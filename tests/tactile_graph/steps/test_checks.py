@@ -190,3 +190,28 @@ def test_a_typed_dict_that_cannot_be_checked_is_told_to_the_author() -> None:
     with pytest.raises(PluginError, match=told):
         check_signature(read_signature("x", with_bare))
     check_signature(read_signature("x", with_fit))
+
+
+def plain_form(image):  # type: ignore[no-untyped-def]
+    return image
+
+
+def frames_form(image: list[Image]) -> Any:
+    return image
+
+
+@pytest.mark.parametrize(
+    ("form", "message"),
+    [
+        (plain_form, "its stacked form must annotate each port with the stack it takes: 'image'"),
+        (frames_form, r"its stacked form: port 'image' is list\[Image\], which is no type of"),
+        (3, "its stacked form has no annotations that can be read: "),
+    ],
+)
+def test_a_stacked_form_must_say_which_stacks_it_takes(form: Any, message: str) -> None:
+    def largest(image: Image) -> float:
+        return float(image.values.max())
+
+    largest.stacked = form  # type: ignore[attr-defined]
+    with pytest.raises(PluginError, match=f"step 'x': {message}"):
+        check_signature(read_signature("x", largest))
