@@ -293,9 +293,18 @@ def _reader(step: str | None, recordings: Sequence[str]) -> tuple[str, str]:
     named = step or found.reader()
     if named is None:
         raise UsageError(f"no plugin offers a step that reads recordings{found.missing_plugins()}")
+    if not found.has("steps", named):
+        raise _no_source(named)
     if not found.has("readers", named):
         raise UsageError(f"give recordings or --source {named}, not both: {recordings[0]}")
     return named, str(found.offer("readers", named).target)
+
+
+def _no_source(step: str) -> UsageError:
+    """Return the error for a name that no step has, with the sources there are."""
+    found = registry.installed()
+    names = [n for n in found.names("steps") if is_source(n)]
+    return UsageError(f"--source: {found.unknown('steps', step)}; sources are: {', '.join(names)}")
 
 
 def takes_count(step: str) -> bool:
@@ -317,12 +326,9 @@ def checked_source(step: str, given: dict[str, Any], recordings: bool) -> dict[s
 
     found = registry.installed()
     if not found.has("steps", step):
-        names = [n for n in found.names("steps") if is_source(n)]
-        raise UsageError(
-            f"--source: {found.unknown('steps', step)}; sources are: {', '.join(names)}"
-            if not recordings
-            else f"recordings need the step {step!r}: {found.unknown('steps', step)}"
-        )
+        if not recordings:
+            raise _no_source(step)
+        raise UsageError(f"recordings need the step {step!r}: {found.unknown('steps', step)}")
     signature = found.step(step)
     if signature.kind is not Kind.SOURCE:
         raise UsageError(f"--source {step}: this step is no source: it yields no frames")
