@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
+import numpy as np
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from tactile_graph.errors import did_you_mean, key_typo, one_of, shown
@@ -42,6 +43,7 @@ _UNKNOWN = ("unexpected_keyword_argument", "extra_forbidden")
 _TELLING = (*_UNKNOWN, "literal_error", "value_error")
 _QUOTED = re.compile(r"\s*[-+]?(\d+|\d*\.\d+|\d+\.\d*)\s*")
 """Numbers that are a text only where somebody quoted them: YAML reads 5e-1 as one by itself."""
+_NAN = re.compile(r"\s*[-+]?nan\s*", re.IGNORECASE)
 _WITH_UNIT = re.compile(r"\s*([-+]?\d*[.,]?\d+(?:[eE][-+]?\d+)?)\s*([A-Za-z%°µΩ]*)\s*")
 _READ_AS = {True: ("on", "yes", "true"), False: ("off", "no", "false")}
 """Words that YAML reads as something else without quotes."""
@@ -89,7 +91,7 @@ def validate_settings(
     troubles += [((n,), _unknown(signature, n, list(known))) for n in given if n not in known]
     for name, setting in known.items():
         if name in given:
-            wrong = _mistyped(setting, given[name])
+            wrong = _mistyped(setting, given[name]) | _not_numbers(setting, given[name])
             try:
                 values[name] = adapter(setting).validate_python(given[name])
             except ValidationError as error:
@@ -125,6 +127,38 @@ def _mistyped(setting: Setting, value: Any) -> dict[Place, str]:
             hint = "; without the quotes it is a number" if fits else ""
             wrong[at] = f"must be {_allowed(annotation)}, got the text {shown(leaf)}{hint}"
     return wrong
+
+
+def _not_numbers(setting: Setting, value: Any) -> dict[Place, str]:
+    """Return what is wrong with each NaN; infinity may well mean that there is no limit.
+
+    Where a setting is NaN unless given, it may be given, too: a resolved pipeline holds it.
+    """
+    if _is_nan(value) and _is_nan(setting.default):
+        return {}
+    wrong = {at: f"must be a number, got {leaf}" for at, leaf in _all(value) if _is_nan(leaf)}
+    for at, annotation, leaf in leaves(setting.annotation, value):
+        if at in wrong and annotation is not Any:
+            wrong[at] = f"must be {_allowed(annotation)}, got {leaf}"
+        elif isinstance(leaf, str) and _NAN.fullmatch(leaf) and _only_numbers(annotation):
+            wrong[at] = f"must be {_allowed(annotation)}, got the text {shown(leaf)}"
+    return wrong
+
+
+def _is_nan(value: Any) -> bool:
+    return isinstance(value, float | np.floating) and bool(np.isnan(value))
+
+
+def _all(value: Any, at: Place = ()) -> Iterator[tuple[Place, Any]]:
+    """Yield place and value of all that is given within mappings and lists, known or not."""
+    if isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _all(inner, (*at, name))
+    elif isinstance(value, list | tuple):
+        for i, inner in enumerate(value):
+            yield from _all(inner, (*at, i))
+    else:
+        yield at, value
 
 
 def _unquoted(got: Any, annotation: Any) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Annotated, Any, ClassVar, Literal, NotRequired
 
+import numpy as np
 import pytest
-from annotated_types import Ge, Gt
+from annotated_types import Ge, Gt, Le
 from typing_extensions import TypedDict
 
 from tactile_graph.pipeline.plain import as_given
@@ -206,3 +208,45 @@ def test_texts_that_look_like_numbers_stay_texts_where_texts_are_meant() -> None
     )
     assert not found
     assert (values["texts"], values["names"], values["cells"]) == (["2"], {1: "2"}, [(1, 2)])
+
+
+def floats(
+    image: int,
+    *,
+    plain: float = 1.0,
+    span: tuple[float, float] = (0.0, 1.0),
+    model: Outer | None = None,
+    few: Annotated[float, Le(5.0)] = 1.0,
+    most: float | None = None,
+    anything: Any = None,
+    title: str = "",
+    open_end: float = math.nan,
+) -> int:
+    """Take numbers."""
+    return image
+
+
+@pytest.mark.parametrize(
+    ("given", "place", "message"),
+    [
+        ({"plain": math.nan}, "plain", "must be a number, got nan"),
+        ({"plain": np.float32("nan")}, "plain", "must be a number, got nan"),
+        ({"plain": "nan"}, "plain", "must be a number, got the text 'nan'"),
+        ({"span": [0, math.nan]}, "span.1", "must be a number, got nan"),
+        ({"model": {"weight": math.nan}}, "model.weight", "must be a number, got nan"),
+        ({"few": math.nan}, "few", "must be a number, got nan"),
+        ({"most": math.nan}, "most", "must be a number or null, got nan"),
+        ({"anything": {"a": [1, math.nan]}}, "anything.a.1", "must be a number, got nan"),
+        ({"title": math.nan}, "title", "must be a text, got nan"),
+    ],
+)
+def test_nan_is_no_number_for_any_setting(given, place, message) -> None:
+    _, found = validate_settings(read_signature("floats", floats), given)
+    assert {".".join(map(str, path)): told for path, told in found} == {place: message}
+
+
+def test_no_limit_and_a_default_that_is_nan_may_be_given() -> None:
+    given = {"plain": math.inf, "span": [-math.inf, 1], "open_end": math.nan, "title": "nan"}
+    values, found = validate_settings(read_signature("floats", floats), given)
+    assert not found
+    assert (values["plain"], values["span"][0], values["title"]) == (math.inf, -math.inf, "nan")
