@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import sys
 import types
 import typing
@@ -172,6 +173,21 @@ def _output(signature: Signature) -> Iterator[str]:
             "it promises frames, but is no generator function: "
             "yield them, or 'yield from' what has them"
         )
+
+    yield from filter(None, map(_absent_column, _within(output)))
+
+
+def _absent_column(kind: Any) -> str:
+    """Return which field a dataclass says tables show and has not; of others only values tell."""
+    of: Any = get_origin(kind) or kind
+    if not dataclasses.is_dataclass(of) or hasattr(of, "__getattr__"):
+        return ""
+    there = [*dir(of), *(f.name for f in dataclasses.fields(of))]
+    for name in getattr(of, "columns_shown", ()):
+        if name not in there:
+            hint = did_you_mean(name, there)
+            return f"its answer {type_name(of)} lacks {name!r} of its columns_shown{hint}"
+    return ""
 
 
 def _yields_frames(output: Any) -> bool:
