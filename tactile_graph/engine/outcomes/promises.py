@@ -6,7 +6,6 @@ further on. Each node is checked once, at its first value, so that the frames to
 
 from __future__ import annotations
 
-import inspect
 import typing
 from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
 from functools import partial
@@ -15,7 +14,7 @@ from typing import Any, get_args, get_origin
 
 import numpy as np
 
-from tactile_graph.engine.outcomes.outcome import NO_VALUE
+from tactile_graph.engine.outcomes.outcome import NO_VALUE, defined_at
 from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.errors import PluginError, did_you_mean
 from tactile_graph.pipeline.graph import Node, NodeKind
@@ -73,12 +72,8 @@ class Promises:
         known = self._registry is not None and self._registry.has("steps", signature.name)
         offer = self._registry.offer("steps", signature.name) if known and self._registry else None
         of = f" of {offer.plugin.label}" if offer is not None else ""
-        try:
-            code = inspect.unwrap(signature.target)
-            file, line = inspect.getsourcefile(code), inspect.getsourcelines(code)[1]
-        except (OSError, TypeError):
-            return f"step {signature.name!r}{of}"
-        return f"step {signature.name!r}{of} ({file}:{line})"
+        place = defined_at(signature.target)
+        return f"step {signature.name!r}{of}" + (f" ({place})" if place else "")
 
 
 def misfit(value: Any, kind: Any) -> str:

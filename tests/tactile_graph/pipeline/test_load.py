@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pickle
 import re
@@ -98,6 +99,10 @@ class Refuses:
     def __init__(self, *, n: int = 1) -> None:
         if n == 7:
             raise ValueError("n must not be 7, got 7")
+        if n == 8:
+            raise ValueError("n is 8\nwhich is even")
+        if n == 9:
+            json.loads("[")
 
     def __call__(self, image: Image) -> int:
         return 1
@@ -224,6 +229,11 @@ BAD_NODES = [
         "table: list should have at least 2",
     ),
     ("m: {step: refuses, in: frame, with: {n: 7}}", "node 'm': n must not be 7, got 7"),
+    ("m: {step: refuses, in: frame, with: {n: 8}}", "node 'm': n is 8 which is even"),
+    (
+        "m: {step: refuses, in: frame, with: {n: 9}}",
+        r"node 'm': step 'refuses' cannot be made: JSONDecodeError: Expecting value: .* \(.*:\d+\)",
+    ),
     # rules
     (
         "g: {step: to_grams, in: frame}\nm: {step: volts, in: g}",
