@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from enum import Enum
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
@@ -12,6 +13,7 @@ import numpy as np
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from tactile_graph.errors import did_you_mean, key_typo, one_of, shown
+from tactile_graph.steps.arrays import is_array, with_arrays
 from tactile_graph.steps.inner import (
     Place,
     fields,
@@ -35,6 +37,7 @@ _WORDS = {
     str: "a text",
     bool: "true or false",
     Path: "a path",
+    np.ndarray: "a list of numbers",
     type(None): "null",
 }
 _MEANT = {"int": int, "float": float, "string": str, "bool": bool, "path": Path}
@@ -60,7 +63,9 @@ _COMPARISONS = {
 @lru_cache(maxsize=1024)
 def _adapter(setting: Setting) -> TypeAdapter[Any]:
     try:
-        made = TypeAdapter(setting.annotation, config=ConfigDict(arbitrary_types_allowed=True))
+        made = TypeAdapter(
+            with_arrays(setting.annotation), config=ConfigDict(arbitrary_types_allowed=True)
+        )
     except Exception:
         # A dataclass or model carries its own configuration and takes none from outside.
         made = TypeAdapter(setting.annotation)
@@ -173,7 +178,9 @@ def _unquoted(got: Any, annotation: Any) -> str:
 def _choices(annotation: Any) -> list[Any]:
     """Return the values of which one must be given."""
     kinds = members(annotation)
-    return [value for kind in kinds if get_origin(kind) is Literal for value in get_args(kind)]
+    told = [value for kind in kinds if get_origin(kind) is Literal for value in get_args(kind)]
+    enums = [kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Enum)]
+    return [*told, *(member.value for kind in enums for member in kind)]
 
 
 def _choice_typo(got: Any, annotation: Any) -> str:
@@ -199,6 +206,7 @@ def _takes_bool(annotation: Any) -> bool:
 def _allowed(annotation: Any) -> str:
     """Return what is allowed as people who write YAML say it: ``a number or null``."""
     kinds = members(annotation)
+    kinds = [np.ndarray if is_array(kind) else kind for kind in kinds]
     if all(isinstance(kind, type) and kind in _WORDS for kind in kinds):
         return " or ".join(_WORDS[kind] for kind in kinds)
     return written_type(annotation)
@@ -287,12 +295,13 @@ def _words(e: Any, setting: Setting, at: Place) -> str:
     if kind in _COMPARISONS:
         key, sign = _COMPARISONS[kind]
         return f"must be {sign} {context[key]}, got {shown(got)}"
-    if kind == "literal_error":
+    if kind in ("literal_error", "enum"):
         told = f"got {shown(got)}{_choice_typo(got, annotation)}"
         return f"must be one of {_allowed(annotation)}, {told}"
     if kind == "value_error":
-        return f"{context.get('error', e['msg'])}"
-    if kind.endswith(("_parsing", "_type", "_from_float")):
+        told = f"{context.get('error', e['msg'])}"
+        return told if re.search(r"\bgot\b", told) else f"{told}, got {shown(got)}"
+    if kind.endswith(("_parsing", "_type", "_from_float")) or kind == "is_instance_of":
         return f"must be {_allowed(annotation)}, got {shown(got)}{_number_typo(got, annotation)}"
     if kind in ("too_short", "too_long"):
         if n_items(annotation):
