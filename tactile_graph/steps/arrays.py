@@ -24,7 +24,8 @@ def with_arrays(annotation: Any) -> Any:
         takes = partial(_array, dtype=_dtype(bare))
         return Annotated[(np.ndarray, BeforeValidator(takes), *metadata)]
     if get_origin(bare) in (Union, types.UnionType) and any(map(is_array, get_args(bare))):
-        either = Union[tuple(map(with_arrays, get_args(bare)))]  # noqa: UP007 -- as many as there are
+        arms = tuple(map(with_arrays, get_args(bare)))
+        either: Any = Union[arms]  # noqa: UP007 -- as many as there are
         return Annotated[(either, *metadata)] if metadata else either
     return annotation
 
