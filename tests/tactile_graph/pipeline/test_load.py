@@ -648,6 +648,18 @@ def test_files_that_use_each_other_are_a_circle_wherever_one_comes_in(
     assert "in a circle: b -> c -> b" in str(caught.value)
 
 
+def test_a_line_that_is_cut_at_its_left_says_so(reg: Any) -> None:
+    names = ", ".join(f"name_{k}" for k in range(20))
+    with pytest.raises(PipelineError) as caught:
+        loads(
+            text_of(f"m: {{step: refuses, in: frame, with: {{n: [{names}], x: 1}}}}"), "p.yaml", reg
+        )
+    problem = next(p for p in caught.value.problems if "unknown setting 'x'" in p.message)
+    shown, caret = problem.snippet.splitlines()
+    assert "| …" in shown
+    assert shown[caret.index("^") :].startswith("1}}")
+
+
 def test_a_byte_order_mark_is_no_mistake(reg: Any, tmp_path: Path) -> None:
     path = tmp_path / "bom.yaml"
     path.write_bytes(b"\xef\xbb\xbf" + text_of().encode())
