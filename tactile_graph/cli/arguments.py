@@ -234,8 +234,7 @@ def source_named(
     base: dict[str, Any] = {}
     if recordings:
         _refuse_no_recordings(pipeline, recordings)
-        step, setting = _reader(step, recordings)
-        base = {setting: recordings[0] if len(recordings) == 1 else list(recordings)}
+        step, base = reader_of(recordings, step)
     elif step is None:
         if own is None:
             raise UsageError(
@@ -285,6 +284,18 @@ def _refuse_no_recordings(pipeline: Pipeline, words: Sequence[str]) -> None:
             )
         if "=" in word and node in pipeline.nodes and setting:
             raise UsageError(f"{word!r} is no recording; a setting is given by --set {word}")
+
+
+def reader_of(recordings: Sequence[str], step: str | None = None) -> tuple[str, dict[str, Any]]:
+    """Return the source that reads recordings, the one named or the first, and what it is told.
+
+    Raises
+    ------
+    UsageError
+        If there is none, or the one named reads no recordings.
+    """
+    named, setting = _reader(step, recordings)
+    return named, {setting: recordings[0] if len(recordings) == 1 else list(recordings)}
 
 
 def _reader(step: str | None, recordings: Sequence[str]) -> tuple[str, str]:
