@@ -235,8 +235,7 @@ def source_named(
     base: dict[str, Any] = {}
     if recordings:
         _refuse_no_recordings(pipeline, recordings)
-        step, setting = _reader(step, recordings)
-        base = {setting: recordings[0] if len(recordings) == 1 else list(recordings)}
+        step, base = reader_of(recordings, step)
     elif step is None:
         if own is None:
             raise UsageError(
@@ -288,15 +287,36 @@ def _refuse_no_recordings(pipeline: Pipeline, words: Sequence[str]) -> None:
             raise UsageError(f"{word!r} is no recording; a setting is given by --set {word}")
 
 
+def reader_of(recordings: Sequence[str], step: str | None = None) -> tuple[str, dict[str, Any]]:
+    """Return the source that reads recordings, the one named or the first, and what it is told.
+
+    Raises
+    ------
+    UsageError
+        If there is none, or the one named reads no recordings.
+    """
+    named, setting = _reader(step, recordings)
+    return named, {setting: recordings[0] if len(recordings) == 1 else list(recordings)}
+
+
 def _reader(step: str | None, recordings: Sequence[str]) -> tuple[str, str]:
     """Return the source step that reads recordings, the one named or the first, and its setting."""
     found = registry.installed()
     named = step or found.reader()
     if named is None:
         raise UsageError(f"no plugin offers a step that reads recordings{found.missing_plugins()}")
+    if not found.has("steps", named):
+        raise _no_source(named)
     if not found.has("readers", named):
         raise UsageError(f"give recordings or --source {named}, not both: {recordings[0]}")
     return named, str(found.offer("readers", named).target)
+
+
+def _no_source(step: str) -> UsageError:
+    """Return the error for a name that no step has, with the sources there are."""
+    found = registry.installed()
+    names = [n for n in found.names("steps") if is_source(n)]
+    return UsageError(f"--source: {found.unknown('steps', step)}; sources are: {', '.join(names)}")
 
 
 def takes_count(step: str) -> bool:
@@ -318,12 +338,9 @@ def checked_source(step: str, given: dict[str, Any], recordings: bool) -> dict[s
 
     found = registry.installed()
     if not found.has("steps", step):
-        names = [n for n in found.names("steps") if is_source(n)]
-        raise UsageError(
-            f"--source: {found.unknown('steps', step)}; sources are: {', '.join(names)}"
-            if not recordings
-            else f"recordings need the step {step!r}: {found.unknown('steps', step)}"
-        )
+        if not recordings:
+            raise _no_source(step)
+        raise UsageError(f"recordings need the step {step!r}: {found.unknown('steps', step)}")
     signature = found.step(step)
     if signature.kind is not Kind.SOURCE:
         raise UsageError(f"--source {step}: this step is no source: it yields no frames")

@@ -7,7 +7,8 @@ axes, `paint_svg` into SVG.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -203,8 +204,7 @@ class _Listing:
 
     def _outline(self, value: Any) -> None:
         with np.errstate(invalid="ignore"):  # of a shape that is nowhere
-            told = _asked(value, "outline_cm", value.outline_cm)
-            xy_cm = np.asarray(told, dtype=np.float64).reshape(-1, 2)
+            xy_cm = _corners(value, _asked(value, "outline_cm", value.outline_cm))
         circle = value if isinstance(value, Circle) else None
         closed = bool(getattr(value, "outline_closed", True))
         self.records.append(Outline(xy_cm, circle, self.role, closed))
@@ -262,6 +262,28 @@ def _asked(value: Any, method: str, ask: Callable[[], Any]) -> Any:
         raise PluginError(
             f"{type(value).__name__}.{method}() breaks: {told} ({raised_at(error)})"
         ) from error
+
+
+def _corners(value: Any, told: Any) -> NDArray[np.float64]:
+    """Return the corners of an outline, (corners, 2), from what a record says they are."""
+    try:
+        xy_cm = np.asarray(told, dtype=np.float64)
+        if xy_cm.ndim < 2 or xy_cm.shape[-1] == 2:
+            return xy_cm.reshape(-1, 2)
+        got = f"an array of shape {xy_cm.shape}"
+    except (TypeError, ValueError):
+        got = shown(told)
+    who = f"{type(value).__name__}.outline_cm()"
+    raise PluginError(f"{who} must give corners, an array of shape (corners, 2), got {got}")
+
+
+@contextmanager
+def drawn_of(name: str) -> Iterator[None]:
+    """Name the node in what is wrong with how its value draws itself."""
+    try:
+        yield
+    except PluginError as error:
+        raise PluginError(f"node {name!r}: {error}") from error
 
 
 def draws_itself(value: Any) -> bool:

@@ -25,6 +25,7 @@ from tactile_graph.draw.display import (
     Outline,
     Record,
     display_list,
+    drawn_of,
     printed,
     truth_list,
 )
@@ -127,7 +128,9 @@ class Film:
             if outcome.__class__ in NO_VALUE:
                 notes.append(_cut(f"{name} {outcome_word(outcome)}"))
                 continue
-            for record in display_list([outcome]):
+            with drawn_of(name):
+                records = display_list([outcome])
+            for record in records:
                 if isinstance(record, Note):
                     notes.append(_cut(f"{name} {record.name} {printed(record.value, 30)}"))
                 elif not isinstance(record, Heat):

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.draw.display import images_in, is_picture
+from tactile_graph.draw.display import drawn_of, images_in, is_picture
 from tactile_graph.engine.operations.fields import field_getter
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, NOT_ASKED
 from tactile_graph.engine.outcomes.outcomes import Outcomes
@@ -84,7 +84,8 @@ def _worth_a_column(name: str, results: Sequence[Outcomes], pipeline: Graph) -> 
     values = [o for o in outcomes if o.__class__ not in NO_VALUE]
     if not values:
         return not node.is_sink and not _is_scalar_type(node.output)
-    return any(is_picture(v) for v in values)
+    with drawn_of(name):
+        return any(is_picture(v) for v in values)
 
 
 def _is_scalar_type(kind: Any) -> bool:
@@ -92,7 +93,8 @@ def _is_scalar_type(kind: Any) -> bool:
 
 
 def _column(name: str, results: Sequence[Outcomes], pipeline: Graph) -> Column:
-    images = [i for r in results for i in images_in(outcome_of(r, name))]
+    with drawn_of(name):
+        images = [i for r in results for i in images_in(outcome_of(r, name))]
     node = pipeline.nodes.get(name)
     step = "" if node is None else "first of" if node.choices else node.what
     if not images:

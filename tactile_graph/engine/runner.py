@@ -22,6 +22,7 @@ from tactile_graph.engine.calls.watched import watched
 from tactile_graph.engine.deadlines.allowed import Deciding
 from tactile_graph.engine.deadlines.options import Decider, options_of
 from tactile_graph.engine.operations.step_operation import Operation, step_label
+from tactile_graph.engine.outcomes.outcome import defined_at
 from tactile_graph.engine.outcomes.outcomes import INNER, ITEM_FAILURES, Outcomes, blank_state
 from tactile_graph.engine.plan import Plan, make_plan
 from tactile_graph.engine.program import make_program
@@ -227,9 +228,16 @@ class Runner(Generic[ResultT]):
             call = self._taken_over(node)
             if call is None:
                 call = make_call(node, self._context)
-                call = watched(call, step_label(node)) if self._verify else call
+                call = self._watched(node, call) if self._verify else call
             self._calls[node.name] = call
         return self._calls[node.name]
+
+    def _watched(self, node: Node, call: Call) -> Call:
+        signature = node.signature
+        if signature is None:
+            return watched(call, step_label(node))
+        ports = [port.name for port in signature.ports]
+        return watched(call, step_label(node), ports, defined_at(signature.target))
 
     def _taken_over(self, node: Node) -> Call | None:
         """Return the call of an equal node of the runner before, its own name's first."""

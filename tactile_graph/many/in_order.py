@@ -27,6 +27,7 @@ DEADLY = 2
 MOST_IN_A_ROW = 8
 """Frames one after the other that kill, each alone, after which no more are tried: it is no frame
 that is to blame then."""
+ISOLATED = "A step that is 'isolated: true' is named by its node, and costs that alone"
 BROKE = (BrokenExecutor, OSError, EOFError)
 """What an executor raises that is given work and cannot have it done any more."""
 PATIENCE_S = 5.0
@@ -220,6 +221,7 @@ class InOrder(Generic[Done]):
 
     def _blameless(self, under: _Under) -> Done:
         portion = under.portion
+        n_vain = 0
         while True:
             for _ in range(DEADLY):
                 lived, result = self._tried(portion)
@@ -227,6 +229,13 @@ class InOrder(Generic[Done]):
                     under.portion = portion
                     return result
             place = self._deadly_place(portion)
+            n_vain += place is None
+            if place in self._without or n_vain >= MOST_IN_A_ROW:
+                raise DataError(
+                    "workers",
+                    f"they die after some frames, whichever these are, {self._why}; no more are "
+                    f"tried. {ISOLATED}",
+                )
             if place is not None:
                 self._without |= {place}
                 self._tell(place)
@@ -239,8 +248,7 @@ class InOrder(Generic[Done]):
         if len(self._row) >= MOST_IN_A_ROW:
             raise DataError(
                 f"frames {self._row[0]} to {place}",
-                f"each ended its worker, the last time {self._why}; no more are tried. A step "
-                "that is 'isolated: true' is named by its node, and costs that alone",
+                f"each ended its worker, the last time {self._why}; no more are tried. {ISOLATED}",
             )
 
     def _deadly_place(self, portion: Portion) -> int | None:

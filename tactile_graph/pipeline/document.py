@@ -110,7 +110,7 @@ class Document:
         line = lines[mark.line - 1]
         start = max(0, mark.column - 60)
         part = line[start : start + 100].replace("\t", " ")
-        label = f"  {mark.line} | "
+        label = f"  {mark.line} | {'…' if start else ''}"
         return f"{label}{part}\n{' ' * (len(label) + _columns(part[: mark.column - 1 - start]))}^"
 
 

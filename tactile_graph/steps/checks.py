@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import sys
 import types
 import typing
@@ -15,6 +16,7 @@ from tactile_graph.errors import PluginError, did_you_mean, one_of, shown
 from tactile_graph.quantities import unknown_quantity
 from tactile_graph.steps.rules import Grid, Quantity
 from tactile_graph.steps.signature import Kind, Setting, Signature, strip, type_name
+from tactile_graph.steps.stacked import stacked_kinds
 
 RULES = ("annotated_types", "pydantic")
 """Packages whose classes, beside a type, are rules that a value must keep."""
@@ -43,6 +45,8 @@ def check_signature(signature: Signature) -> None:
         *_output(signature),
     ):
         raise PluginError(f"step {signature.name!r}: {trouble}")
+    if signature.kind is not Kind.SOURCE:
+        stacked_kinds(signature)
 
 
 def _kinds(signature: Signature) -> Iterator[str]:
@@ -169,6 +173,21 @@ def _output(signature: Signature) -> Iterator[str]:
             "it promises frames, but is no generator function: "
             "yield them, or 'yield from' what has them"
         )
+
+    yield from filter(None, map(_absent_column, _within(output)))
+
+
+def _absent_column(kind: Any) -> str:
+    """Return which field a dataclass says tables show and has not; of others only values tell."""
+    of: Any = get_origin(kind) or kind
+    if not dataclasses.is_dataclass(of) or hasattr(of, "__getattr__"):
+        return ""
+    there = [*dir(of), *(f.name for f in dataclasses.fields(of))]
+    for name in getattr(of, "columns_shown", ()):
+        if name not in there:
+            hint = did_you_mean(name, there)
+            return f"its answer {type_name(of)} lacks {name!r} of its columns_shown{hint}"
+    return ""
 
 
 def _yields_frames(output: Any) -> bool:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from enum import Enum
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
+import numpy as np
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from tactile_graph.errors import did_you_mean, key_typo, one_of, shown
+from tactile_graph.steps.arrays import is_array, with_arrays
 from tactile_graph.steps.inner import (
     Place,
     fields,
@@ -34,6 +37,7 @@ _WORDS = {
     str: "a text",
     bool: "true or false",
     Path: "a path",
+    np.ndarray: "a list of numbers",
     type(None): "null",
 }
 _MEANT = {"int": int, "float": float, "string": str, "bool": bool, "path": Path}
@@ -42,6 +46,7 @@ _UNKNOWN = ("unexpected_keyword_argument", "extra_forbidden")
 _TELLING = (*_UNKNOWN, "literal_error", "value_error")
 _QUOTED = re.compile(r"\s*[-+]?(\d+|\d*\.\d+|\d+\.\d*)\s*")
 """Numbers that are a text only where somebody quoted them: YAML reads 5e-1 as one by itself."""
+_NAN = re.compile(r"\s*[-+]?nan\s*", re.IGNORECASE)
 _WITH_UNIT = re.compile(r"\s*([-+]?\d*[.,]?\d+(?:[eE][-+]?\d+)?)\s*([A-Za-z%°µΩ]*)\s*")
 _READ_AS = {True: ("on", "yes", "true"), False: ("off", "no", "false")}
 """Words that YAML reads as something else without quotes."""
@@ -58,7 +63,9 @@ _COMPARISONS = {
 @lru_cache(maxsize=1024)
 def _adapter(setting: Setting) -> TypeAdapter[Any]:
     try:
-        made = TypeAdapter(setting.annotation, config=ConfigDict(arbitrary_types_allowed=True))
+        made = TypeAdapter(
+            with_arrays(setting.annotation), config=ConfigDict(arbitrary_types_allowed=True)
+        )
     except Exception:
         # A dataclass or model carries its own configuration and takes none from outside.
         made = TypeAdapter(setting.annotation)
@@ -95,7 +102,7 @@ def validate_settings(
     troubles += [((n,), _unknown(signature, n, list(known))) for n in given if n not in known]
     for name, setting in known.items():
         if name in given:
-            wrong = _mistyped(setting, given[name])
+            wrong = _mistyped(setting, given[name]) | _not_numbers(setting, given[name])
             try:
                 values[name] = adapter(setting).validate_python(given[name])
             except ValidationError as error:
@@ -133,6 +140,38 @@ def _mistyped(setting: Setting, value: Any) -> dict[Place, str]:
     return wrong
 
 
+def _not_numbers(setting: Setting, value: Any) -> dict[Place, str]:
+    """Return what is wrong with each NaN; infinity may well mean that there is no limit.
+
+    Where a setting is NaN unless given, it may be given, too: a resolved pipeline holds it.
+    """
+    if _is_nan(value) and _is_nan(setting.default):
+        return {}
+    wrong = {at: f"must be a number, got {leaf}" for at, leaf in _all(value) if _is_nan(leaf)}
+    for at, annotation, leaf in leaves(setting.annotation, value):
+        if at in wrong and annotation is not Any:
+            wrong[at] = f"must be {_allowed(annotation)}, got {leaf}"
+        elif isinstance(leaf, str) and _NAN.fullmatch(leaf) and _only_numbers(annotation):
+            wrong[at] = f"must be {_allowed(annotation)}, got the text {shown(leaf)}"
+    return wrong
+
+
+def _is_nan(value: Any) -> bool:
+    return isinstance(value, float | np.floating) and bool(np.isnan(value))
+
+
+def _all(value: Any, at: Place = ()) -> Iterator[tuple[Place, Any]]:
+    """Yield place and value of all that is given within mappings and lists, known or not."""
+    if isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _all(inner, (*at, name))
+    elif isinstance(value, list | tuple):
+        for i, inner in enumerate(value):
+            yield from _all(inner, (*at, i))
+    else:
+        yield at, value
+
+
 def _unquoted(got: Any, annotation: Any) -> str:
     """Return which quotes make a text of what YAML read as something else, empty if none do."""
     spelled_so = _READ_AS.get(got, ()) if isinstance(got, bool) else (str(got),)
@@ -145,7 +184,9 @@ def _unquoted(got: Any, annotation: Any) -> str:
 def _choices(annotation: Any) -> list[Any]:
     """Return the values of which one must be given."""
     kinds = members(annotation)
-    return [value for kind in kinds if get_origin(kind) is Literal for value in get_args(kind)]
+    told = [value for kind in kinds if get_origin(kind) is Literal for value in get_args(kind)]
+    enums = [kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Enum)]
+    return [*told, *(member.value for kind in enums for member in kind)]
 
 
 def _choice_typo(got: Any, annotation: Any) -> str:
@@ -171,6 +212,7 @@ def _takes_bool(annotation: Any) -> bool:
 def _allowed(annotation: Any) -> str:
     """Return what is allowed as people who write YAML say it: ``a number or null``."""
     kinds = members(annotation)
+    kinds = [np.ndarray if is_array(kind) else kind for kind in kinds]
     if all(isinstance(kind, type) and kind in _WORDS for kind in kinds):
         return " or ".join(_WORDS[kind] for kind in kinds)
     return written_type(annotation)
@@ -259,12 +301,13 @@ def _words(e: Any, setting: Setting, at: Place) -> str:
     if kind in _COMPARISONS:
         key, sign = _COMPARISONS[kind]
         return f"must be {sign} {context[key]}, got {shown(got)}"
-    if kind == "literal_error":
+    if kind in ("literal_error", "enum"):
         told = f"got {shown(got)}{_choice_typo(got, annotation)}"
         return f"must be one of {_allowed(annotation)}, {told}"
     if kind == "value_error":
-        return f"{context.get('error', e['msg'])}"
-    if kind.endswith(("_parsing", "_type", "_from_float")):
+        told = f"{context.get('error', e['msg'])}"
+        return told if re.search(r"\bgot\b", told) else f"{told}, got {shown(got)}"
+    if kind.endswith(("_parsing", "_type", "_from_float")) or kind == "is_instance_of":
         return f"must be {_allowed(annotation)}, got {shown(got)}{_number_typo(got, annotation)}"
     if kind in ("too_short", "too_long"):
         if n_items(annotation):

@@ -40,7 +40,11 @@ def same(one: Any, other: Any, within: Pairs = frozenset()) -> bool:
     if names:
         within |= {(id(one), id(other))}
         return all(same(getattr(one, n, None), getattr(other, n, None), within) for n in names)
-    return bool(one == other)
+    try:
+        return bool(one == other)
+    except Exception:  # a plugin's own may raise anything: what it is made of tells
+        held = getattr(one, "__dict__", None)
+        return held is not None and same(held, other.__dict__, within | {(id(one), id(other))})
 
 
 def _content(value: Any) -> set[str]:

@@ -65,6 +65,8 @@ def _drawn(value: Any) -> None:
         xy = np.asarray(getattr(record, "xy_cm", np.zeros((0, 2))))
         if xy.ndim != 2 or xy.shape[1] != 2:
             raise ValueError(f"places have the shape {xy.shape}, (places, 2) is needed")
+        if len(xy) and not np.isfinite(xy).any():
+            raise ValueError(f"none of its {len(xy)} places is a number")
 
 
 def _measured(shape: Any) -> None:

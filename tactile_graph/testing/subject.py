@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from tactile_graph.engine.outcomes.promises import broken_rule, misfit
+from tactile_graph.engine.outcomes.promises import absent_column, broken_rule, misfit
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.checks import check_signature
@@ -78,9 +78,8 @@ class Subject:
         if value is None:
             is_sink = self.signature.output in (None, type(None))
             return "" if is_sink else "returns None; raise Degenerate or Skip with the reason"
-        return misfit(value, self.signature.output) or broken_rule(
-            self.signature, self.settings, inputs.get, value
-        )
+        told = misfit(value, self.signature.output) or absent_column(value)
+        return told or broken_rule(self.signature, self.settings, inputs.get, value)
 
 
 def subject_of(

@@ -81,8 +81,8 @@ def convert(
 
     Plugins may write other files: 'tactile-graph plugins' lists what is installed.
 
-    RECORDING is a Zarr store or any file that the source 'recording' reads. With --source the
-    frames are those of any other source, a simulated one or a plugin's.
+    RECORDING is a Zarr store or any file that the source 'recording' reads, or a plugin's that
+    --source names. Without any the frames are those of --source, such as a simulated one.
     """
     from tactile_graph.errors import UsageError
     from tactile_graph.plugins.devices import reads_device
@@ -102,7 +102,7 @@ def convert(
             frames = kept.until_ended(frames)  # what a pad gave is not to be had again
         elif source is not None and n_frames is None and not installed().has("readers", source):
             frames = kept.until_ended(frames, report)
-        about = source or ", ".join(r.name for r in recordings)
+        about = ", ".join(r.name for r in recordings) or str(source)
         with opened:
             n = writer.write(target, kept.watch(islice(frames, n_frames)), about)
     except ValueError as error:
@@ -123,6 +123,7 @@ def convert(
 
 def _check(recordings: Sequence[Path], target: Path, source: str | None, overwrite: bool) -> str:
     """Return the ending of the target that says who writes it, in small letters."""
+    from tactile_graph.cli.arguments import reader_of
     from tactile_graph.errors import did_you_mean
     from tactile_graph.files import check_target
     from tactile_graph_sources.stores.layout import is_store
@@ -135,8 +136,10 @@ def _check(recordings: Sequence[Path], target: Path, source: str | None, overwri
         if target.suffix.lower() == ".mat" and ".csv" in kinds:
             near = "; MATLAB reads .csv by readtable"
         raise click.UsageError(f"TARGET must end in {', '.join(kinds)}, got {name!r}{near}")
-    if bool(recordings) == (source is not None):
-        raise click.UsageError("give recordings before TARGET, or --source, and not both")
+    if not recordings and source is None:
+        raise click.UsageError("give recordings before TARGET, or --source")
+    if recordings and source is not None:
+        reader_of([*map(str, recordings)], source)  # of a source that makes its frames: refused
     if target.is_dir() or (target.exists() and not overwrite):
         remedy = "" if target.is_dir() else ", or write over it with --overwrite"
         if is_store(target):
@@ -157,13 +160,15 @@ def _frames(
     seed: int,
     report: Report,
 ) -> Iterator[Frame]:
-    from tactile_graph.cli.arguments import source_settings_of
+    from tactile_graph.cli.arguments import reader_of, source_settings_of
     from tactile_graph_sources.commands.any_source import as_many, frames_of_source
 
     typed = source_settings_of(source or "recording", settings)
     given = {**typed, **{k: v for k, v in told.items() if v is not None}}
     if source is None:
         given["path"] = [str(r) for r in recordings]
+    elif recordings:
+        given |= reader_of([*map(str, recordings)], source)[1]
     else:
         given = as_many(source, given, n_frames)
     return frames_of_source(source or "recording", given, report, seed)

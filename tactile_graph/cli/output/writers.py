@@ -249,12 +249,14 @@ class LineFile:
         UsageError
             If it cannot be written; of a file, whole lines are left.
         """
-        self._put(self._file or self.open(), self.lines.line(result))
+        line = self.lines.line(result)  # before there is a file: a plugin's value may break it
+        self._put(self._file or self.open(), line)
         self._n_lines += 1
 
     def write_block(self, block: Block[Result]) -> None:
         """Write the lines of several frames through to the file; errors as of `write`."""
-        self._put(self._file or self.open(), self.lines.of_block(block))
+        lines = self.lines.of_block(block)
+        self._put(self._file or self.open(), lines)
         self._n_lines += len(block)
 
     def open(self) -> BinaryIO:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import repeat
 from time import perf_counter_ns as clock
-from typing import Any, get_type_hints
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from tactile_graph.errors import PluginError
 from tactile_graph.pipeline.conditions.conditions import Guard
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.steps.signature import Signature
+from tactile_graph.steps.stacked import STACKED, stacked_kinds
 from tactile_graph.wires.stacks import Answered, Column, Listed, Rows, Stack, field_of
 
 Call = Callable[..., Any]
@@ -106,16 +107,10 @@ def form_of(
     PluginError
         If the form is not annotated.
     """
-    form = getattr(signature.target, "stacked", None)
-    if form is None:
+    kinds = stacked_kinds(signature)
+    if kinds is None:
         return None
-    try:
-        hints = get_type_hints(form)
-        kinds = {port.name: hints[port.name] for port in signature.ports}
-    except (NameError, KeyError) as error:
-        told = f"step {signature.name!r}: its stacked form must annotate each port: {error}"
-        raise PluginError(told) from None
-    return StackedForm(signature.form("stacked", settings, made), kinds)
+    return StackedForm(signature.form(STACKED, settings, made), kinds)
 
 
 def in_order(node: Node) -> bool:

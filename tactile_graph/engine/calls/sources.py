@@ -41,7 +41,8 @@ def open_source(
     try:
         yield from _frames(source, seed, report, in_stacks)
     except (Degenerate, Skip) as error:  # words of steps, which go on with the next frame
-        raise DataError(f"source {source.name!r}", f"{error} ({raised_at(error)})") from error
+        told = " ".join(str(error).split())
+        raise DataError(f"source {source.name!r}", f"{told} ({raised_at(error)})") from error
     except (UsageError, DataError) as error:
         hint = lies_beside(source.mark.file, source.settings, str(error))
         if not hint:
@@ -54,7 +55,7 @@ def open_source(
     except (Exception, SystemExit) as error:  # a source may raise anything
         if isinstance(error, OSError) and error.filename is not None:
             raise  # it names the file
-        text = f"{type(error).__name__}: {text_of(error)}".removesuffix(": ")
+        text = " ".join(f"{type(error).__name__}: {text_of(error)}".split()).removesuffix(":")
         raise DataError(f"source {source.name!r}", f"{text} ({raised_at(error)})") from error
 
 

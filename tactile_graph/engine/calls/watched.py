@@ -8,7 +8,7 @@ costs time, so it is done only when asked for.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from types import FunctionType, ModuleType
 from typing import Any
@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.engine.operations.freeze import freeze
+from tactile_graph.engine.outcomes.outcome import raised_there
 from tactile_graph.errors import PluginError
 
 Call = Callable[..., Any]
@@ -143,7 +144,7 @@ def _fill_again(value: Any, content: Any) -> None:
             object.__setattr__(value, name, one)
 
 
-def watched(call: Call, what: str) -> Call:
+def watched(call: Call, what: str, ports: Sequence[str] = (), place: str = "") -> Call:
     """Return a step that fails where it writes into its inputs or into what it gave before.
 
     Parameters
@@ -152,6 +153,10 @@ def watched(call: Call, what: str) -> Call:
         The step, of its ports.
     what : str
         How errors name it.
+    ports : sequence of str, optional
+        Its inputs in order; those without a name are told by their number.
+    place : str, optional
+        File and line at which it is defined.
 
     Raises
     ------
@@ -160,20 +165,23 @@ def watched(call: Call, what: str) -> Call:
     """
     before: Kept | None = None
 
+    def wrong(told: str) -> PluginError:
+        return raised_there(PluginError(told), place) if place else PluginError(told)
+
     def watching(*args: Any, **kwargs: Any) -> Any:
         nonlocal before
-        given = {**{f"input {i}": a for i, a in enumerate(args, 1)}, **kwargs}
+        named = [*ports, *(f"input {i}" for i in range(len(ports) + 1, len(args) + 1))]
+        given = {**dict(zip(named, args, strict=False)), **kwargs}
         kept = Kept(given)
         result = call(*args, **kwargs)
         wrote = kept.changed()
         if wrote:
             names = ", ".join(wrote)
-            raise PluginError(f"{what} writes into {names}, which others read: change a copy")
+            told = f"{what} writes into {names}, which others read: change a copy"
+            raise wrong(told)
         if before is not None and before.changed():
             before = None
-            raise PluginError(
-                f"{what} writes into what it gave before, which others read: give a copy"
-            )
+            raise wrong(f"{what} writes into what it gave before, which others read: give a copy")
         of_result = Kept.of_answer("result", result)
         # What lies in its input may rightly change: a source may fill the same array anew.
         before = None if of_result.within(given) else of_result

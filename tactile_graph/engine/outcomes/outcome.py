@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import pickle
 from collections.abc import Callable, Iterable
@@ -274,3 +275,12 @@ def raised_at(error: BaseException) -> str:
     for file, line, name in (others or passed)[-1:]:
         return f"{file}:{line} in {name}"
     return ""
+
+
+def defined_at(target: Any) -> str:
+    """Return the file and line at which a step is defined; "" where nobody can tell."""
+    try:
+        code = inspect.unwrap(target)
+        return f"{inspect.getsourcefile(code)}:{inspect.getsourcelines(code)[1]}"
+    except (OSError, TypeError):
+        return ""

@@ -6,7 +6,6 @@ further on. Each node is checked once, at its first value, so that the frames to
 
 from __future__ import annotations
 
-import inspect
 import typing
 from collections.abc import Callable, Iterable, Mapping, Sequence, Sized
 from functools import partial
@@ -15,9 +14,9 @@ from typing import Any, get_args, get_origin
 
 import numpy as np
 
-from tactile_graph.engine.outcomes.outcome import NO_VALUE
+from tactile_graph.engine.outcomes.outcome import NO_VALUE, defined_at
 from tactile_graph.engine.outcomes.outcomes import Outcomes
-from tactile_graph.errors import PluginError
+from tactile_graph.errors import PluginError, did_you_mean
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import arms, public_fields
 from tactile_graph.plugins.registry import Registry
@@ -60,7 +59,8 @@ class Promises:
             value = result.outcome(node.name)
             if value.__class__ in NO_VALUE:
                 continue
-            broken = misfit(value, node.output) or _of_node(node, value, result)
+            broken = misfit(value, node.output) or absent_column(value)
+            broken = broken or _of_node(node, value, result)
             if broken:
                 raise PluginError(f"node {node.name!r}: {self._step(node)} {broken}")
             # Another thread may have checked it too, or put it back: then it is checked again.
@@ -72,12 +72,8 @@ class Promises:
         known = self._registry is not None and self._registry.has("steps", signature.name)
         offer = self._registry.offer("steps", signature.name) if known and self._registry else None
         of = f" of {offer.plugin.label}" if offer is not None else ""
-        try:
-            code = inspect.unwrap(signature.target)
-            file, line = inspect.getsourcefile(code), inspect.getsourcelines(code)[1]
-        except (OSError, TypeError):
-            return f"step {signature.name!r}{of}"
-        return f"step {signature.name!r}{of} ({file}:{line})"
+        place = defined_at(signature.target)
+        return f"step {signature.name!r}{of}" + (f" ({place})" if place else "")
 
 
 def misfit(value: Any, kind: Any) -> str:
@@ -94,6 +90,21 @@ def _field_misfit(value: Any, kind: Any) -> str:
         wrong = "" if field is None else misfit(field, public_fields(kind).get(name, Any))
         if wrong:
             return f"{wrong} as .{name}"
+    return ""
+
+
+def absent_column(value: Any) -> str:
+    """Return which field its type says tables show and a record has not; "" where all are there.
+
+    Of a list its items are looked at, of a named tuple its fields.
+    """
+    if isinstance(value, list | tuple):
+        return next(filter(None, map(absent_column, value[:MOST_ITEMS])), "")
+    kind, there = type(value), dir(value)
+    for name in getattr(kind, "columns_shown", ()):
+        if name not in there and not hasattr(value, name):
+            hint = did_you_mean(name, there)
+            return f"gave {kind.__name__}, which lacks {name!r} of its columns_shown{hint}"
     return ""
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import traceback
 from collections import Counter
 from dataclasses import replace
 from typing import Any
@@ -236,13 +237,22 @@ def _made(scope: Scope, declared: NodeDeclaration, node: Node) -> Node:
         with righted():
             made = replace(node, callable=node.bound(**{rng: default_rng(0)} if rng else {}))
     except Exception as error:  # a constructor may raise anything about its settings
-        told = isinstance(error, TactileGraphError | ValueError) and str(error)
+        told = str(error) if isinstance(error, TactileGraphError) else _on_purpose(error, node)
         text = told or f"step {declared.step!r} cannot be made: {why(error)}"
         hint = lies_beside(scope.document.file, declared.settings, str(text))
         scope.problem(declared, f": {text}{hint}", "with")
         return node
     _rules(scope, declared, *quantity_troubles(made, scope.facts, scope.frames))
     return made
+
+
+def _on_purpose(error: Exception, node: Node) -> str:
+    """Return the words of a ValueError that a step's own package raised; "" for other errors."""
+    assert node.signature is not None
+    *_, (last, _) = traceback.walk_tb(error.__traceback__)
+    package = str(last.f_globals.get("__name__", "")).partition(".")[0]
+    ours = package in ("tactile_graph", node.signature.target.__module__.partition(".")[0])
+    return " ".join(str(error).split()) if ours and isinstance(error, ValueError) else ""
 
 
 def _rules(

@@ -162,9 +162,21 @@ class Frayed:
         raise LookupError("no edge")
 
 
+class Lettered:
+    def outline_cm(self) -> str:
+        return "xx"
+
+
+class Solid:
+    def outline_cm(self) -> Any:
+        return np.zeros((4, 3))
+
+
 @pytest.mark.parametrize(
     ("value", "told"),
     [
+        (Lettered(), r"Lettered\.outline_cm\(\) must give corners, .*, got 'xx'$"),
+        (Solid(), r"Solid\.outline_cm\(\) must give .*, got an array of shape \(4, 3\)$"),
         (Smudged(), r"Smudged\.drawing\(\) breaks: LookupError: no ink \(.*display.py:\d+"),
         (
             Frayed(),

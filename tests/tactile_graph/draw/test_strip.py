@@ -38,7 +38,8 @@ from tactile_graph.draw.strip import (
     save_strip,
     strip_figure,
 )
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import PluginError, UsageError
+from tactile_graph.plugins.registry import installed_and
 from tactile_graph.wires import Mask, TrueObject
 
 
@@ -217,6 +218,23 @@ def test_a_plugins_own_type_is_drawn_by_its_outline() -> None:
     (axes,) = cells(figure)
     outline = max((x.get_xydata() for x in axes.lines if not x.is_dashed()), key=len)
     assert outline.tolist() == [[10.4, 9.4], [11.4, 10.4], [10.4, 11.4], [9.4, 10.4], [10.4, 9.4]]
+
+
+class Lettered:
+    def outline_cm(self) -> str:
+        return "xx"
+
+
+def lettered(image: Image) -> Lettered:
+    return Lettered()
+
+
+def test_an_outline_that_is_none_is_told_with_its_node() -> None:
+    text = "{pipeline: p, nodes: {n: {step: lettered, in: frame}}, outputs: [n]}"
+    result = loads(text, registry=installed_and({"lettered": lettered})).run(np.ones((2, 2)))
+    told = r"node 'n': Lettered\.outline_cm\(\) must give corners"
+    with pytest.raises(PluginError, match=told):
+        strip_figure([result], ["n"])
 
 
 @pytest.mark.slow

@@ -115,6 +115,29 @@ def test_workers_that_die_without_any_frame_end_it_and_blame_none() -> None:
         done(down)
 
 
+class Counting(Here):
+    """Breaks at the third frame that it is given, whichever that is."""
+
+    n = 0
+
+    def submit(self, function: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        portion = args[1]
+        self.n += len({*range(portion.low, portion.high)} - portion.without)
+        self.deadly = {*range(60)} if self.n > 2 else set()
+        return super().submit(function, *args, **kwargs)
+
+
+def test_workers_that_die_of_any_frame_end_it_and_none_is_blamed_for_ever() -> None:
+    kind = ExecutorKind("counting", lambda a, n: Opened(Counting(set(), []), 2, lambda: None))
+    left_out: list[int] = []
+    with (
+        InOrder(Place(kind, "", 2), frames, b"", left_out.append) as workers,
+        pytest.raises(DataError, match="they die after some frames, whichever these are"),
+    ):
+        next(workers.results(portions(6)))
+    assert len(left_out) == len(set(left_out)) < 8
+
+
 class Forgetful(Executor):
     """Forgets the portions it has from the nth on; of anything else it says that it is broken."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pickle
 import re
@@ -98,6 +99,10 @@ class Refuses:
     def __init__(self, *, n: int = 1) -> None:
         if n == 7:
             raise ValueError("n must not be 7, got 7")
+        if n == 8:
+            raise ValueError("n is 8\nwhich is even")
+        if n == 9:
+            json.loads("[")
 
     def __call__(self, image: Image) -> int:
         return 1
@@ -224,6 +229,11 @@ BAD_NODES = [
         "table: list should have at least 2",
     ),
     ("m: {step: refuses, in: frame, with: {n: 7}}", "node 'm': n must not be 7, got 7"),
+    ("m: {step: refuses, in: frame, with: {n: 8}}", "node 'm': n is 8 which is even"),
+    (
+        "m: {step: refuses, in: frame, with: {n: 9}}",
+        r"node 'm': step 'refuses' cannot be made: JSONDecodeError: Expecting value: .* \(.*:\d+\)",
+    ),
     # rules
     (
         "g: {step: to_grams, in: frame}\nm: {step: volts, in: g}",
@@ -636,6 +646,18 @@ def test_files_that_use_each_other_are_a_circle_wherever_one_comes_in(
         load(tmp_path / "d.yaml", reg)
     assert "in a circle: c -> b -> c" in str(caught.value)
     assert "in a circle: b -> c -> b" in str(caught.value)
+
+
+def test_a_line_that_is_cut_at_its_left_says_so(reg: Any) -> None:
+    names = ", ".join(f"name_{k}" for k in range(20))
+    with pytest.raises(PipelineError) as caught:
+        loads(
+            text_of(f"m: {{step: refuses, in: frame, with: {{n: [{names}], x: 1}}}}"), "p.yaml", reg
+        )
+    problem = next(p for p in caught.value.problems if "unknown setting 'x'" in p.message)
+    shown, caret = problem.snippet.splitlines()
+    assert "| …" in shown
+    assert shown[caret.index("^") :].startswith("1}}")
 
 
 def test_a_byte_order_mark_is_no_mistake(reg: Any, tmp_path: Path) -> None:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypedDict
+from typing import Annotated, Any, ClassVar, Literal, TypedDict
 
 import pytest
 from annotated_types import Ge, Len, Lt, MinLen, MultipleOf
@@ -190,3 +191,54 @@ def test_a_typed_dict_that_cannot_be_checked_is_told_to_the_author() -> None:
     with pytest.raises(PluginError, match=told):
         check_signature(read_signature("x", with_bare))
     check_signature(read_signature("x", with_fit))
+
+
+def plain_form(image):  # type: ignore[no-untyped-def]
+    return image
+
+
+def frames_form(image: list[Image]) -> Any:
+    return image
+
+
+@pytest.mark.parametrize(
+    ("form", "message"),
+    [
+        (plain_form, "its stacked form must annotate each port with the stack it takes: 'image'"),
+        (frames_form, r"its stacked form: port 'image' is list\[Image\], which is no type of"),
+        (3, "its stacked form has no annotations that can be read: "),
+    ],
+)
+def test_a_stacked_form_must_say_which_stacks_it_takes(form: Any, message: str) -> None:
+    def largest(image: Image) -> float:
+        return float(image.values.max())
+
+    largest.stacked = form  # type: ignore[attr-defined]
+    with pytest.raises(PluginError, match=f"step 'x': {message}"):
+        check_signature(read_signature("x", largest))
+
+
+@dataclasses.dataclass
+class Lacking:
+    x_cm: float
+    columns_shown: ClassVar[tuple[str, ...]] = ("x_cm", "x_mm")
+
+
+@dataclasses.dataclass
+class Whole(Lacking):
+    @property
+    def x_mm(self) -> float:
+        return 10.0 * self.x_cm
+
+
+def test_a_dataclass_has_the_columns_it_shows() -> None:
+    def lacks(image: Image) -> list[Lacking]:
+        return []
+
+    def has(image: Image) -> Whole:
+        return Whole(1.0)
+
+    check_signature(read_signature("x", has))
+    told = "its answer Lacking lacks 'x_mm' of its columns_shown; did you mean 'x_cm'"
+    with pytest.raises(PluginError, match=told):
+        check_signature(read_signature("x", lacks))

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import Annotated, Any, ClassVar, Literal, NotRequired
 
+import numpy as np
 import pytest
-from annotated_types import Ge, Gt
+from annotated_types import Ge, Gt, Le
+from numpy.typing import NDArray
+from pydantic import BaseModel, field_validator
 from typing_extensions import TypedDict
 
 from tactile_graph.pipeline.plain import as_given
@@ -90,7 +94,7 @@ def test_a_trouble_within_a_mapping_names_the_field(model, place, message) -> No
 
 
 def test_enums_and_fields_that_may_be_absent_are_told_as_a_file_gives_them() -> None:
-    told = "must be 'red' | 'blue', got 'RED' (Input should be 'red' or 'blue')"
+    told = "must be one of 'red' | 'blue', got 'RED'; did you mean 'red'?"
     assert troubles(typed={"note": 4}, colour="RED") == {
         "typed.note": "must be a text, got 4",
         "colour": told,
@@ -206,3 +210,93 @@ def test_texts_that_look_like_numbers_stay_texts_where_texts_are_meant() -> None
     )
     assert not found
     assert (values["texts"], values["names"], values["cells"]) == (["2"], {1: "2"}, [(1, 2)])
+
+
+def floats(
+    image: int,
+    *,
+    plain: float = 1.0,
+    span: tuple[float, float] = (0.0, 1.0),
+    model: Outer | None = None,
+    few: Annotated[float, Le(5.0)] = 1.0,
+    most: float | None = None,
+    anything: Any = None,
+    title: str = "",
+    open_end: float = math.nan,
+) -> int:
+    """Take numbers."""
+    return image
+
+
+@pytest.mark.parametrize(
+    ("given", "place", "message"),
+    [
+        ({"plain": math.nan}, "plain", "must be a number, got nan"),
+        ({"plain": np.float32("nan")}, "plain", "must be a number, got nan"),
+        ({"plain": "nan"}, "plain", "must be a number, got the text 'nan'"),
+        ({"span": [0, math.nan]}, "span.1", "must be a number, got nan"),
+        ({"model": {"weight": math.nan}}, "model.weight", "must be a number, got nan"),
+        ({"few": math.nan}, "few", "must be a number, got nan"),
+        ({"most": math.nan}, "most", "must be a number or null, got nan"),
+        ({"anything": {"a": [1, math.nan]}}, "anything.a.1", "must be a number, got nan"),
+        ({"title": math.nan}, "title", "must be a text, got nan"),
+    ],
+)
+def test_nan_is_no_number_for_any_setting(given, place, message) -> None:
+    _, found = validate_settings(read_signature("floats", floats), given)
+    assert {".".join(map(str, path)): told for path, told in found} == {place: message}
+
+
+def test_no_limit_and_a_default_that_is_nan_may_be_given() -> None:
+    given = {"plain": math.inf, "span": [-math.inf, 1], "open_end": math.nan, "title": "nan"}
+    values, found = validate_settings(read_signature("floats", floats), given)
+    assert not found
+    assert (values["plain"], values["span"][0], values["title"]) == (math.inf, -math.inf, "nan")
+
+
+class Odd(BaseModel):
+    size: int = 3
+
+    @field_validator("size")
+    @classmethod
+    def odd(cls, size: int) -> int:
+        if size % 2 == 0:
+            raise ValueError("size must be odd")
+        return size
+
+
+def weighs(
+    image: int,
+    *,
+    w: np.ndarray = np.ones(3),  # noqa: B008
+    exact: NDArray[np.float64] | None = None,
+    odd: Odd | None = None,
+) -> int:
+    """Take arrays."""
+    return image
+
+
+def test_a_list_of_numbers_is_taken_where_an_array_is_meant() -> None:
+    given = {"w": [[1, 2], [3, 4]], "exact": [1, 2]}
+    values, found = validate_settings(read_signature("weighs", weighs), given)
+    assert not found
+    assert (values["w"].shape, values["w"].dtype) == ((2, 2), np.int64)
+    assert (values["exact"].tolist(), values["exact"].dtype) == ([1.0, 2.0], np.float64)
+    assert not values["w"].flags.writeable
+    mine = np.ones(2)
+    assert validate_settings(read_signature("weighs", weighs), {"w": mine})[0]["w"] is mine
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"w": [1, "a"]}, "must be a list of numbers, got [1, 'a']"),
+        ({"w": [[1], [1, 2]]}, "must be a list of numbers, got [[1], [1, 2]]"),
+        ({"w": "a"}, "must be a list of numbers, got 'a'"),
+        ({"exact": "a"}, "must be a list of numbers or null, got 'a'"),
+        ({"odd": {"size": 4}}, "size must be odd, got 4"),
+    ],
+)
+def test_what_was_got_is_told_of_arrays_and_of_a_models_own_rules(given, message) -> None:
+    _, found = validate_settings(read_signature("weighs", weighs), given)
+    assert [told for _, told in found] == [message]

@@ -38,6 +38,7 @@ def never_returns(mask: Mask) -> int:
 
 
 def good(mask: Mask) -> int:
+    print("a line for each case", flush=True)
     return mask.count
 
 
@@ -96,6 +97,15 @@ def test_the_copy_of_a_step_that_forks_answers_for_no_step(found: registry.Regis
     trier.close()
     assert [r.step for r in reports] == ["forks", "good", "forks", "good"]
     assert not [line for r in reports for line in r.lines()]
+
+
+def test_what_a_step_prints_in_its_trials_is_not_shown(
+    found: registry.Registry, capfd: pytest.CaptureFixture[str]
+) -> None:
+    trier = Apart(found)
+    assert not trier.examine("good").lines()
+    trier.close()
+    assert "a line for each case" not in "".join(capfd.readouterr())
 
 
 def test_a_trial_that_is_interrupted_answers_for_no_other_step(

@@ -21,6 +21,7 @@ from tactile_graph.steps import Grid, Quantity
 from tactile_graph.testing import BrokenPromises, Case, all_cases, check_step, examine_step
 from tactile_graph.testing import examination as trials
 from tactile_graph.testing import trial as calls
+from tactile_graph.testing.same import same
 from tactile_graph.vocabulary import QUANTITIES
 from tactile_graph.wires.stacks import Column, MaskStack
 
@@ -238,6 +239,17 @@ def sums_badly(mask: Mask) -> Summed:
     return Summed(1.0)
 
 
+class Nowhere(NamedTuple):
+    name: str = "nowhere"
+
+    def outline_cm(self) -> Any:
+        return np.full((3, 2), np.nan)
+
+
+def draws_nowhere(mask: Mask) -> Nowhere:
+    return Nowhere()
+
+
 BROKEN: list[tuple[Callable[..., Any], str]] = [
     (writes_through, "writes into its input mask; change a copy"),
     (writes, "raises ValueError: output array is read-only"),
@@ -262,6 +274,7 @@ BROKEN: list[tuple[Callable[..., Any], str]] = [
     (says_of_no_port, "its notice asks for 'msk', which is none of its ports; did you mean 'mask'"),
     (assumes_badly, "its assumed cannot be had: KeyError: 'nobody'"),
     (sums_badly, "its summary cannot be had: PluginError: Summed.summary() must return a mapping"),
+    (draws_nowhere, "its drawing cannot be had: ValueError: none of its 3 places is a number"),
     (HandsOutItsState, "writes into what it gave before; give a copy"),
 ]
 
@@ -385,6 +398,21 @@ def two_values(mask: MaskStack) -> Column:
 
 
 short.stacked = two_values  # type: ignore[attr-defined]
+
+
+class Incomparable:
+    def __init__(self, count: int) -> None:
+        self.count = count
+
+    def __eq__(self, other: object) -> bool:
+        raise RuntimeError("no equality")
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+def test_a_record_whose_equality_raises_is_held_against_another_by_its_content() -> None:
+    assert same(Incomparable(1), Incomparable(1))
+    assert not same(Incomparable(1), Incomparable(2))
 
 
 def test_the_same_fault_of_a_stacked_form_is_one_line() -> None:

@@ -11,11 +11,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from helpers_cli import plugin
 from tactile_graph import Frame
 from tactile_graph.cli import cli
 from tactile_graph.cli.interrupt import Ended
 from tactile_graph.errors import UsageError
-from tactile_graph.plugins.registry import installed
+from tactile_graph.plugins import registry
+from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires import Circle, TrueObject
 from tactile_graph_sources.commands.convert import OFFERS, convert
@@ -336,6 +338,24 @@ def test_several_recordings_and_any_setting_of_their_reader(
     np.testing.assert_array_equal(read[6].image.values, made[0].image.values[::-1])
 
 
+def rows_read(*, rows_of: Path) -> Iterator[Frame]:
+    for k, line in enumerate(rows_of.read_text().splitlines()):
+        yield Frame.of(np.full((2, 2), float(line)), quantity="volt", index=k)
+
+
+def test_recordings_are_read_by_the_plugins_step_that_source_names(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows = plugin(tmp_path, steps={"rows_read": rows_read}, readers={"rows_read": "rows_of"})
+    found = Registry([*registry.found_plugins(), ("rows", "rows", "1", rows)])
+    monkeypatch.setattr(registry, "installed", lambda: found)
+    monkeypatch.setattr("tactile_graph_sources.commands.any_source.installed", lambda: found)
+    (tmp_path / "a.rows").write_text("1\n2\n")
+    run(tmp_path / "a.rows", tmp_path / "b.npz", "--source", "rows_read")
+    read = list(recording(path=tmp_path / "b.npz", report=Report()))
+    assert [f.image.values[0, 0] for f in read] == [1.0, 2.0]
+
+
 def test_the_form_of_times_is_typed_as_it_stands(tmp_path: Path) -> None:
     lines = [f"16.11.2026 10h{k:02d}," + ",".join("12345678"[:k] + "9" * (9 - k)) for k in range(6)]
     (tmp_path / "a.csv").write_text("\n".join(["stamp,a1,a2,a3,b1,b2,b3,c1,c2,c3", *lines]))
@@ -349,7 +369,8 @@ def test_the_form_of_times_is_typed_as_it_stands(tmp_path: Path) -> None:
     ("args", "message"),
     [
         (["b.npz"], "give recordings before TARGET, or --source"),
-        (["a.npz", "b.npz", "--source", "simulate"], "and not both"),
+        (["a.npz", "b.npz", "--source", "simulate"], "or --source simulate, not both"),
+        (["a.npz", "b.npz", "--source", "recordng"], "did you mean 'recording'"),
         (["b.npz", "--source", "simulat"], "did you mean 'simulate'"),
         (["b.npz", "--source", "threshold"], "this step is no source"),
         (["b.npz", "--source", "simulate", "--with", "scen=discs"], "did you mean 'scene'"),

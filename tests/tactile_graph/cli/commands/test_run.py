@@ -329,6 +329,14 @@ def test_recordings_are_read_by_whatever_step_its_plugin_offers_for_it(tmp_path,
     assert steps == [("recording", 2), ("lines_read", 2)]
 
 
+def test_an_unknown_source_beside_recordings_is_told_by_what_is_near(tmp_path):
+    got = call("run", "loads", "a.txt", "--source", "recordng")
+    assert got.exit_code == 2
+    assert "--source: no step named 'recordng'; did you mean 'recording'?" in got.stderr
+    got = call("run", "loads", "a.txt", "--source", "made")
+    assert "give recordings or --source made, not both: a.txt" in got.stderr
+
+
 def test_without_a_step_that_reads_recordings_it_is_said(tmp_path, monkeypatch):
     install(monkeypatch, tmp_path, ("torn", "torn-package", "1", broken_plugin), readers={})
     got = call("run", "loads", "a.txt")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import gc
+import inspect
 import json
 import os
 import resource
@@ -460,7 +461,9 @@ def test_verify_finds_the_step_that_writes_and_others_get_their_answers(
     assert [o["b"] >= 1.0 for o in outputs] == [True] * 3
     assert ["failed" in o["a"] for o in outputs] == [True] * 3
     assert "step clipped of " in got.stderr
-    assert "writes into input 1, which others read: change a copy" in " ".join(got.stderr.split())
+    told = " ".join(got.stderr.split())
+    assert "writes into image, which others read: change a copy (" in told
+    assert f"({__file__}:{inspect.getsourcelines(clipped)[1]})" in told
     assert call("run", "discs", "--verify", "--frames", "3").exit_code == 0
 
 

@@ -328,6 +328,10 @@ class Columnless:
     x_cm: float
     columns_shown = ("gone_cm",)
 
+    @property
+    def gone_cm(self) -> float:
+        raise AttributeError("it is gone")
+
 
 @dataclass
 class Summing:
@@ -363,6 +367,8 @@ def test_a_record_that_cannot_be_written_is_told_by_its_output(
     got = call("run", "p.yaml", "r.txt", "--format", form)
     assert got.exit_code == 2
     assert f"error: {told}" in got.stderr
+    call("run", "p.yaml", "r.txt", "-o", f"out.{form}")
+    assert not [*hand_made.glob("out*")]
 
 
 def test_the_rate_of_frames_leaves_out_the_time_of_the_compiler(

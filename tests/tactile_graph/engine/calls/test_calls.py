@@ -345,13 +345,22 @@ def ended() -> Iterator[Frame]:
     yield
 
 
-SOURCES = {"bad_unit": bad_unit, "ended": ended}
+def cut() -> Iterator[Frame]:
+    raise RuntimeError("cable\nout")
+    yield
+
+
+SOURCES = {"bad_unit": bad_unit, "ended": ended, "cut": cut}
 FROM = "pipeline: p\nsource: {{step: {}}}\nnodes:\n  a: {{step: constant}}\noutputs: [a]\n"
 
 
 @pytest.mark.parametrize(
     ("source", "words"),
-    [("bad_unit", "unknown quantity 'volts'"), ("ended", "source 'ended': nothing more")],
+    [
+        ("bad_unit", "unknown quantity 'volts'"),
+        ("ended", "source 'ended': nothing more"),
+        ("cut", "source 'cut': RuntimeError: cable out ("),
+    ],
 )
 def test_what_a_source_raises_is_told_with_the_line_of_its_own_code(
     source: str, words: str

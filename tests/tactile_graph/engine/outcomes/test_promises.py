@@ -72,6 +72,17 @@ def numbers(image: Image) -> list[float]:
     return [1.0, 2.0]
 
 
+class Lacking:
+    columns_shown = ("x_cm", "y_mm")
+
+    def __init__(self) -> None:
+        self.x_cm, self.y_cm = 1.0, 2.0
+
+
+def lacking(image: Image) -> list[Lacking]:
+    return [Lacking()]
+
+
 def source() -> Iterator[Frame]:
     yield Frame.of(np.ones((2, 2)), quantity="volt")
 
@@ -80,7 +91,7 @@ STEPS = {
     f.__name__: f
     for f in (
         *(wrong, later, smaller, finer, heavier, volts, flat, objects, each, right),
-        *(numbers, source),
+        *(numbers, lacking, source),
     )
 }
 
@@ -111,6 +122,7 @@ def text(step: str) -> str:
         ("volts", "promises volt or siemens, but gave raw"),
         ("flat", r"gave values of shape \(6,\), not \(rows, columns\)"),
         ("objects", "gave values of type object, not numbers"),
+        ("lacking", "gave Lacking, which lacks 'y_mm' of its columns_shown; did you mean 'y_cm'"),
     ],
 )
 def test_a_broken_promise_names_node_step_plugin_and_place(

@@ -1,0 +1,42 @@
+"""What a step's form for stacks of frames takes, as its annotations say."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, get_type_hints
+
+from tactile_graph.errors import PluginError
+from tactile_graph.steps.signature import Signature, type_name
+
+STACKED = "stacked"
+"""The attribute of a step by which it offers the form."""
+
+
+def stacked_kinds(signature: Signature) -> Mapping[str, Any] | None:
+    """Return which stack each port of a step's form for stacks takes; None where it offers none.
+
+    Raises
+    ------
+    PluginError
+        If the form does not say so of each port.
+    """
+    form = getattr(signature.target, STACKED, None)
+    if form is None:
+        return None
+    what = f"step {signature.name!r}: its stacked form"
+    try:
+        hints = get_type_hints(form)
+    except Exception as error:  # no function, or names that nothing defines
+        raise PluginError(f"{what} has no annotations that can be read: {error}") from None
+    if absent := [p.name for p in signature.ports if p.name not in hints]:
+        raise PluginError(
+            f"{what} must annotate each port with the stack it takes: {absent[0]!r} has none"
+        )
+    kinds = {port.name: hints[port.name] for port in signature.ports}
+    for name, kind in kinds.items():
+        try:
+            isinstance(None, kind)
+        except TypeError:
+            told = f"port {name!r} is {type_name(kind)}, which is no type of stacks"
+            raise PluginError(f"{what}: {told}") from None
+    return kinds
