@@ -140,7 +140,8 @@ def _call_of_any(item: Item, node: Node, call: Call, time: int, blocks: list[Blo
                 elif port.required:
                     lacking = lacking or value
                     break
-                value = port.default
+                if not port.iterates:  # else each item takes it
+                    value = port.default
             arguments[port.name] = value
         if lacking is not None:
             state[slot] = lacking
