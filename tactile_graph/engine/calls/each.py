@@ -211,4 +211,5 @@ def _refused(node: Node, binding: Binding, empty: list[Any], n_lists: int) -> An
         return failed
     gap = empty[0]
     where = item_words(gap.item) or "an item"
-    return Skipped(node.name, f"{where} of {binding.refs[0]} was skipped: {gap.reason}")
+    reason = f"{where} of {binding.refs[0]} was skipped: {gap.reason}"
+    return Skipped(node.name, reason, unforeseen=True)
