@@ -11,7 +11,8 @@ from dataclasses import replace
 from operator import itemgetter
 from typing import Any, TypeVar
 
-from tactile_graph.engine.outcomes.outcome import Failed, Skipped, gaps
+from tactile_graph.engine.operations.fields import field_getter
+from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed, Skipped, gaps
 from tactile_graph.engine.outcomes.outcomes import (
     INNER,
     ITEM_FAILURES,
@@ -99,49 +100,39 @@ class Replay:
 
         def call(*_: Any, **__: Any) -> Any:
             outcome = self._recorded[slot]
-            if isinstance(outcome, Skipped | Failed):
-                return _renamed(outcome, known, name)
-            if gaps(outcome):
-                return tuple([_renamed(item, known, name) for item in outcome])
             if outcome is None:
                 raise LookupError(f"nothing was recorded of {known!r}")
-            return outcome
+            return _renamed(outcome, known, name)
 
-        return _with_own_fields(call, name) if node.inner is not None else call
+        return call
 
     def _field_of(self, ref: Ref) -> Callable[[Any], Any]:
-        """Return what hands out the recorded field of a node; None where it was not known."""
-        slot, name = self.plan.refs[ref], str(ref)
+        """Return what hands out the recorded field of a node; what it lacks is told anew."""
+        slot, get = self.plan.refs[ref], field_getter(ref)
 
-        def field(_: Any) -> Any:
+        def field(value: Any) -> Any:
             outcome = self._recorded[slot]
-            if outcome.__class__ is Skipped:
-                return None
-            return outcome.at(name) if outcome.__class__ is Failed else outcome
+            return get(value) if outcome.__class__ in NO_VALUE or gaps(outcome) else outcome
 
         return field
 
 
 def _renamed(outcome: Any, known: str, name: str) -> Any:
-    """Return an outcome that began at one node, or in it, as of another; any other as it is."""
+    """Return an outcome that began at one node, or in it, as of another; any other as it is.
+
+    So are those of a list's items, and of the outputs of a pipeline run over a list.
+    """
     if isinstance(outcome, Skipped | Failed):
         if outcome.origin == known:
             return outcome.at(name)
         if outcome.origin.startswith(f"{known}/"):
             return outcome.at(name + outcome.origin.removeprefix(known))
+    elif gaps(outcome) or not _is_whole(outcome):
+        renamed = [_renamed(value, known, name) for value in outcome]
+        return outcome._make(renamed) if hasattr(outcome, "_make") else tuple(renamed)
     return outcome
 
 
-def _with_own_fields(call: Callable[..., Any], name: str) -> Callable[..., Any]:
-    """Name the node in what was skipped among the outputs of a pipeline run over a list."""
-
-    def named(*args: Any, **kwargs: Any) -> Any:
-        record = call(*args, **kwargs)
-        skipped = {
-            field: value.at(name)
-            for field in getattr(record, "_fields", ())
-            if (value := getattr(record, field)).__class__ is Skipped
-        }
-        return record._replace(**skipped) if skipped else record
-
-    return named
+def _is_whole(value: Any) -> bool:
+    """Return whether all outputs of a pipeline that was run over a list have a value."""
+    return not hasattr(value, "_make") or all(v.__class__ not in NO_VALUE for v in value)
