@@ -6,6 +6,7 @@ its calls hand out recorded outcomes. What it settles is what the plan alone wou
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from operator import itemgetter
@@ -47,6 +48,7 @@ class Replay:
     def __init__(self, plan: Plan, recorded_as: Mapping[str, str]) -> None:
         self.plan = plan
         self._recorded_as = {FRAME: FRAME, **recorded_as}
+        self._own_names = {known: name for name, known in self._recorded_as.items()}
         self._recorded: tuple[Any, ...] = ()
         self._reads: list[tuple[Plan, Read]] = []
         self._blank = blank_state(plan.n_slots)
@@ -97,12 +99,14 @@ class Replay:
         """Return what hands out a node's recorded outcome, whatever it is called with."""
         slot, name = self.plan.refs[Ref(node.name)], node.name
         known = self._recorded_as[name]
+        near = [*(ref.node for ref in node.wires()), name]  # of equal nodes, the nearest counts
+        own_names = ChainMap({self._recorded_as[n]: n for n in near}, self._own_names)
 
         def call(*_: Any, **__: Any) -> Any:
             outcome = self._recorded[slot]
             if outcome is None:
                 raise LookupError(f"nothing was recorded of {known!r}")
-            return _renamed(outcome, known, name)
+            return _renamed(outcome, own_names)
 
         return call
 
@@ -117,20 +121,28 @@ class Replay:
         return field
 
 
-def _renamed(outcome: Any, known: str, name: str) -> Any:
-    """Return an outcome that began at one node, or in it, as of another; any other as it is.
+def _renamed(outcome: Any, own_names: Mapping[str, str]) -> Any:
+    """Return an outcome that began at a recorded node, or in it, as of the plan's own.
 
     So are those of a list's items, and of the outputs of a pipeline run over a list.
     """
     if isinstance(outcome, Skipped | Failed):
-        if outcome.origin == known:
-            return outcome.at(name)
-        if outcome.origin.startswith(f"{known}/"):
-            return outcome.at(name + outcome.origin.removeprefix(known))
-    elif gaps(outcome) or not _is_whole(outcome):
-        renamed = [_renamed(value, known, name) for value in outcome]
+        origin = _renamed_origin(outcome.origin, own_names)
+        return outcome if origin == outcome.origin else outcome.at(origin)
+    if gaps(outcome) or not _is_whole(outcome):
+        renamed = [_renamed(value, own_names) for value in outcome]
         return outcome._make(renamed) if hasattr(outcome, "_make") else tuple(renamed)
     return outcome
+
+
+def _renamed_origin(origin: str, own_names: Mapping[str, str]) -> str:
+    """Return a node's name, or that of what is in it or a field of it, in the plan's own."""
+    known = origin
+    while known:
+        if known in own_names:
+            return own_names[known] + origin[len(known) :]
+        known = known[: max(known.rfind("/"), known.rfind("."), 0)]
+    return origin
 
 
 def _is_whole(value: Any) -> bool:

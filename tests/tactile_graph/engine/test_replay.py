@@ -113,6 +113,25 @@ outputs: [some]
     assert [(f.origin, f.item) for f in alone.failures] == [("some", (1,))]
 
 
+def test_items_handed_on_are_told_in_the_plans_own_names() -> None:
+    lists = """\
+pipeline: p
+nodes:
+  number: {step: read, in: frame}
+  items: {step: many, in: number}
+  some: {step: picky, in: items, each: true, with: {bad: 2}}
+  more: {step: add1, in: some, each: true}
+  sum: {step: total, in: more}
+outputs: [more, sum]
+"""
+    own = loads(lists, "p.yaml", registry(STEPS))
+    recorded = loads(lists.replace("some", "few"), "p.yaml", registry(STEPS)).run(frame(3))
+    names = {name: name for name in own.nodes}
+    alone = Replay(make_plan(own, ("more", "sum")), {**names, "some": "few"})(recorded)
+    for name in ("more", "sum"):
+        assert told(alone.outcome(name)) == told(own.run(frame(3)).outcome(name))
+
+
 INNER = """\
 pipeline: inner
 nodes:
