@@ -2,7 +2,8 @@
 
 It plans nothing, hoists nothing and knows no slots. Whatever a node needs is evaluated when it is
 needed, in the order the meaning gives: the guard before all else, then the ports in their order
-up to one that is skipped, the choices of ``first_of`` up to one with a value.
+up to one that is skipped (unless by its own step, or one that failed), the choices of ``first_of``
+up to one with a value.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tactile_graph.errors import Skip
@@ -26,6 +27,7 @@ class Outcome:
     state: str
     value: Any = None
     origin: str = ""
+    unforeseen: bool = field(default=False, compare=False)
 
     @property
     def has_value(self) -> bool:
@@ -162,7 +164,8 @@ class Naive:
                 arguments[port] = step.optional[port]
             else:
                 lacking = lacking or found
-                break
+                if not found.unforeseen:
+                    break
         if lacking is not None:
             return lacking
         arguments = {**step.optional, **arguments}
@@ -192,7 +195,9 @@ class Naive:
         if failed is not None:
             return failed
         kept = tuple(o.value for o in found if o.has_value)
-        return value(kept) if kept else found[0]
+        return (
+            value(kept) if kept else replace(found[0], unforeseen=all(o.unforeseen for o in found))
+        )
 
     def choice(self, choices: list[tuple[str, Any, str]]) -> Outcome:
         found = []
@@ -200,7 +205,8 @@ class Naive:
             found.append(self.ref(*choice))
             if found[-1].has_value:
                 return found[-1]
-        return next((o for o in found if o.state == "failed"), found[-1])
+        last = replace(found[-1], unforeseen=any(o.unforeseen for o in found))
+        return next((o for o in found if o.state == "failed"), last)
 
     def call(self, step: NaiveStep, body: Any, arguments: dict[str, Any], at: str) -> Outcome:
         settings = dict(body.get("with", {}))
@@ -214,7 +220,7 @@ class Naive:
         try:
             return value(step.function(**arguments, **settings))
         except Skip:
-            return Outcome("skipped", origin=at)
+            return Outcome("skipped", origin=at, unforeseen=True)
         except Exception:
             return Outcome("failed", origin=at)
 

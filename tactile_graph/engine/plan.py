@@ -27,6 +27,7 @@ class Input:
     default: object
     name: str
     lazy: tuple[int, ...] = ()
+    iterates: bool = False
 
 
 @dataclass
@@ -253,7 +254,7 @@ class _Planner:
             else:
                 item.inputs = tuple(
                     Input(tuple(self.by_ref[r] for r in b.refs), b.collects, b.port.required,
-                          b.port.default, b.port.name)
+                          b.port.default, b.port.name, iterates=b.iterates)
                     for b in node.inputs
                 )  # fmt: skip
             item.reads = item.guard + tuple(s for i in item.inputs for s in i.slots)

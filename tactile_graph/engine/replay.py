@@ -6,12 +6,14 @@ its calls hand out recorded outcomes. What it settles is what the plan alone wou
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from operator import itemgetter
 from typing import Any, TypeVar
 
-from tactile_graph.engine.outcomes.outcome import Failed, Skipped, gaps
+from tactile_graph.engine.operations.fields import field_getter
+from tactile_graph.engine.outcomes.outcome import NO_VALUE, Failed, Skipped, gaps
 from tactile_graph.engine.outcomes.outcomes import (
     INNER,
     ITEM_FAILURES,
@@ -46,6 +48,7 @@ class Replay:
     def __init__(self, plan: Plan, recorded_as: Mapping[str, str]) -> None:
         self.plan = plan
         self._recorded_as = {FRAME: FRAME, **recorded_as}
+        self._own_names = {known: name for name, known in self._recorded_as.items()}
         self._recorded: tuple[Any, ...] = ()
         self._reads: list[tuple[Plan, Read]] = []
         self._blank = blank_state(plan.n_slots)
@@ -96,52 +99,52 @@ class Replay:
         """Return what hands out a node's recorded outcome, whatever it is called with."""
         slot, name = self.plan.refs[Ref(node.name)], node.name
         known = self._recorded_as[name]
+        near = [*(ref.node for ref in node.wires()), name]  # of equal nodes, the nearest counts
+        own_names = ChainMap({self._recorded_as[n]: n for n in near}, self._own_names)
 
         def call(*_: Any, **__: Any) -> Any:
             outcome = self._recorded[slot]
-            if isinstance(outcome, Skipped | Failed):
-                return _renamed(outcome, known, name)
-            if gaps(outcome):
-                return tuple([_renamed(item, known, name) for item in outcome])
             if outcome is None:
                 raise LookupError(f"nothing was recorded of {known!r}")
-            return outcome
+            return _renamed(outcome, own_names)
 
-        return _with_own_fields(call, name) if node.inner is not None else call
+        return call
 
     def _field_of(self, ref: Ref) -> Callable[[Any], Any]:
-        """Return what hands out the recorded field of a node; None where it was not known."""
-        slot, name = self.plan.refs[ref], str(ref)
+        """Return what hands out the recorded field of a node; what it lacks is told anew."""
+        slot, get = self.plan.refs[ref], field_getter(ref)
 
-        def field(_: Any) -> Any:
+        def field(value: Any) -> Any:
             outcome = self._recorded[slot]
-            if outcome.__class__ is Skipped:
-                return None
-            return outcome.at(name) if outcome.__class__ is Failed else outcome
+            return get(value) if outcome.__class__ in NO_VALUE or gaps(outcome) else outcome
 
         return field
 
 
-def _renamed(outcome: Any, known: str, name: str) -> Any:
-    """Return an outcome that began at one node, or in it, as of another; any other as it is."""
+def _renamed(outcome: Any, own_names: Mapping[str, str]) -> Any:
+    """Return an outcome that began at a recorded node, or in it, as of the plan's own.
+
+    So are those of a list's items, and of the outputs of a pipeline run over a list.
+    """
     if isinstance(outcome, Skipped | Failed):
-        if outcome.origin == known:
-            return outcome.at(name)
-        if outcome.origin.startswith(f"{known}/"):
-            return outcome.at(name + outcome.origin.removeprefix(known))
+        origin = _renamed_origin(outcome.origin, own_names)
+        return outcome if origin == outcome.origin else outcome.at(origin)
+    if gaps(outcome) or not _is_whole(outcome):
+        renamed = [_renamed(value, own_names) for value in outcome]
+        return outcome._make(renamed) if hasattr(outcome, "_make") else tuple(renamed)
     return outcome
 
 
-def _with_own_fields(call: Callable[..., Any], name: str) -> Callable[..., Any]:
-    """Name the node in what was skipped among the outputs of a pipeline run over a list."""
+def _renamed_origin(origin: str, own_names: Mapping[str, str]) -> str:
+    """Return a node's name, or that of what is in it or a field of it, in the plan's own."""
+    known = origin
+    while known:
+        if known in own_names:
+            return own_names[known] + origin[len(known) :]
+        known = known[: max(known.rfind("/"), known.rfind("."), 0)]
+    return origin
 
-    def named(*args: Any, **kwargs: Any) -> Any:
-        record = call(*args, **kwargs)
-        skipped = {
-            field: value.at(name)
-            for field in getattr(record, "_fields", ())
-            if (value := getattr(record, field)).__class__ is Skipped
-        }
-        return record._replace(**skipped) if skipped else record
 
-    return named
+def _is_whole(value: Any) -> bool:
+    """Return whether all outputs of a pipeline that was run over a list have a value."""
+    return not hasattr(value, "_make") or all(v.__class__ not in NO_VALUE for v in value)

@@ -25,6 +25,7 @@ from tactile_graph.engine.blocks.stacked import (
 from tactile_graph.engine.operations.fields import field_getter
 from tactile_graph.engine.plan import Plan
 from tactile_graph.engine.program import Reading, make_program
+from tactile_graph.pipeline.conditions.conditions import Guard
 from tactile_graph.pipeline.graph import Node
 from tactile_graph.pipeline.wiring import Ref
 from tactile_graph.wires.frame import Frame
@@ -61,7 +62,7 @@ class Blocks:
         self._call_of, self._show = call_of, show
         self._frames: FrameStack
         self._constant = {i.name for i in plan.items if i.constant and i.node is not None}
-        reading = Reading(self._field_of, stacked_guard, resumed=True)
+        reading = Reading(self._field_of, self._guard_of, resumed=True)
         self._operations = make_program(plan, self._stacked_call, blank, reading)
         self.resume = make_program(plan, call_of, blank, Reading(resumed=True))
 
@@ -104,6 +105,9 @@ class Blocks:
             return call
         slot = self.plan.refs[Ref(node.name)]
         return stacked_call(node, slot, call, lambda: self._frames, self._show)
+
+    def _guard_of(self, guard: Guard) -> Guard:
+        return stacked_guard(guard, lambda: self._frames)
 
     def _field_of(self, ref: Ref) -> Call:
         return stacked_field(() if ref.item_path else ref.path, field_getter(ref))

@@ -227,10 +227,18 @@ def _part_at(there: Any) -> None:
     raise Parted([np.flatnonzero(there)], np.flatnonzero(~there))
 
 
-def stacked_guard(guard: Guard) -> Guard:
-    """Return a guard over stacks: it says what holds for all frames, or lets them part ways."""
-    if guard.groups:
-        return replace(guard, groups=(), function=_over_items)
+def stacked_guard(guard: Guard, frames: Callable[[], Stack]) -> Guard:
+    """Return a guard over stacks: it says what holds for all frames, or lets them part ways.
+
+    Parameters
+    ----------
+    guard : Guard
+    frames : callable
+        Gives the frames of the group under way.
+    """
+    if guard.groups:  # what it reads may be the same for all frames: no stack
+        alone = lambda *_: _raise(all_alone(len(frames())))  # noqa: E731
+        return replace(guard, groups=(), function=alone)
     holds = guard.function
 
     def verdict(values: tuple[Any, ...]) -> bool | None:
@@ -259,10 +267,6 @@ def stacked_guard(guard: Guard) -> Guard:
         raise Parted(together, np.flatnonzero(said < 0))
 
     return replace(guard, function=holds_for_all)
-
-
-def _over_items(*values: Any) -> bool:
-    raise all_alone(next(len(v) for v in values if isinstance(v, Stack)))
 
 
 # -- one frame of a group, or some of them ---------------------------------------------------

@@ -34,17 +34,20 @@ Call = Callable[..., Any]
 
 
 def for_each(node: Node, step: Call, context: Context) -> Call:
-    """Return the step run over the items of whichever ports hold lists it does not want whole."""
+    """Return the step run over the items of whichever ports hold lists it does not want whole.
+
+    Where the list of an optional port was skipped, each item of the others takes its default.
+    """
     assert node.signature is not None
     over = [b.port for b in node.inputs if b.iterates]
-    names = [port.name for port in over]
     order = [p.name for p in node.signature.ports]
     sink = node.signature.output is type(None) or node.signature.output is None
 
     def outcome_of(values: dict[str, Any], i: int) -> Any:
         item = dict(values)
         for port in over:
-            value = item[port.name] = values[port.name][i]
+            whole = values[port.name]
+            value = item[port.name] = whole if whole.__class__ is Skipped else whole[i]
             if value.__class__ in NO_VALUE:
                 if port.required or value.__class__ is Failed:
                     return value
@@ -59,6 +62,9 @@ def for_each(node: Node, step: Call, context: Context) -> Call:
 
     def call(*args: Any, **kwargs: Any) -> Any:
         values = {**dict(zip(order, args, strict=False)), **kwargs}
+        names = [port.name for port in over if values[port.name].__class__ is not Skipped]
+        if not names:
+            return values[over[0].name]
         outcomes = []
         outer = context.item
         try:
@@ -205,4 +211,5 @@ def _refused(node: Node, binding: Binding, empty: list[Any], n_lists: int) -> An
         return failed
     gap = empty[0]
     where = item_words(gap.item) or "an item"
-    return Skipped(node.name, f"{where} of {binding.refs[0]} was skipped: {gap.reason}")
+    reason = f"{where} of {binding.refs[0]} was skipped: {gap.reason}"
+    return Skipped(node.name, reason, unforeseen=True)

@@ -32,7 +32,9 @@ def field_getter(ref: Ref) -> Get:
             found = of_item(item)
         except Exception as error:
             return raised(name, error, (item,), "").of_item(i)
-        return Skipped(name, f"its {path} is not known", item=(i,)) if found is None else found
+        if found is None:
+            return Skipped(name, f"its {path} is not known", item=(i,), unforeseen=True)
+        return found
 
     def of_each(value: Any) -> Any:
         items = value if whole is None else whole(value)

@@ -139,8 +139,10 @@ def _call_of_any(item: Item, node: Node, call: Call, time: int, blocks: list[Blo
                     lacking = lacking or value
                 elif port.required:
                     lacking = lacking or value
-                    break
-                value = port.default
+                    if not value.unforeseen:  # type: ignore[attr-defined]
+                        break
+                if not port.iterates:  # else each item takes it
+                    value = port.default
             arguments[port.name] = value
         if lacking is not None:
             state[slot] = lacking
@@ -180,7 +182,11 @@ def _collected(state: State, port: Input, name: str) -> Any:
         if value.__class__ is Failed:
             return value
     kept = tuple([v for v in values if v.__class__ is not Skipped])
-    return kept or Skipped(values[0].origin, f"every item of {port.name!r} was skipped")
+    if kept:
+        return kept
+    first, reason = values[0], f"every item of {port.name!r} was skipped"
+    unforeseen = first.unforeseen and all(v.unforeseen for v in values)
+    return Skipped(first.origin, reason, unforeseen=unforeseen)
 
 
 def step_label(node: Node) -> str:

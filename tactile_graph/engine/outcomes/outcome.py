@@ -22,10 +22,12 @@ class Skipped:
     """A node that was not needed, with the reason and the node it began at.
 
     The text of the reason is made only when somebody asks for it. ``item`` says which item of a
-    list it is, counted from 0, outermost list first; it is empty for a whole node.
+    list it is, counted from 0, outermost list first; it is empty for a whole node. ``unforeseen``
+    tells that no guard, no list without values and no unknown field was the cause: a step said so
+    itself.
     """
 
-    __slots__ = ("_reason", "_values", "item", "origin")
+    __slots__ = ("_reason", "_values", "item", "origin", "unforeseen")
 
     def __init__(
         self,
@@ -33,9 +35,11 @@ class Skipped:
         reason: str | Callable[[tuple[Any, ...]], str],
         values: tuple[Any, ...] = (),
         item: tuple[int, ...] = (),
+        unforeseen: bool = False,
     ) -> None:
         self.origin = origin
         self.item = item
+        self.unforeseen = unforeseen
         self._reason = reason
         self._values = values
 
@@ -49,9 +53,10 @@ class Skipped:
         """Whether it was skipped because it would not have been done in time."""
         return self._reason is for_want_of_time
 
-    def at(self, origin: str) -> Skipped:
-        """Return the same, begun at a node of another name."""
-        return Skipped(origin, self._reason, self._values, self.item)
+    def at(self, origin: str, *, unforeseen: bool = False) -> Skipped:
+        """Return the same, begun at a node of another name; or as it is, but ``unforeseen``."""
+        unforeseen = unforeseen or self.unforeseen
+        return Skipped(origin, self._reason, self._values, self.item, unforeseen)
 
     def of_item(self, i: int) -> Skipped:
         """Return the same as the outcome of a list's item."""
@@ -66,7 +71,7 @@ class Skipped:
         if not self._values:
             return self
         values = tuple([change(value) for value in self._values])
-        return Skipped(self.origin, self._reason, values, self.item)
+        return Skipped(self.origin, self._reason, values, self.item, self.unforeseen)
 
     def __repr__(self) -> str:
         return f"<skipped at {self.origin!r}: {self.reason}>"
@@ -218,7 +223,7 @@ DONE = Done()
 def raised(name: str, error: Exception, values: tuple[Any, ...], what: str) -> Skipped | Failed:
     """Return the outcome of a node whose step raised: skipped where it said so, else failed."""
     if isinstance(error, Skip):
-        return Skipped(name, str(error) or "its step had nothing to say")
+        return Skipped(name, str(error) or "its step had nothing to say", unforeseen=True)
     return failure(name, error, values, what)
 
 

@@ -15,6 +15,7 @@ from tactile_graph.errors import one_of, shown
 from tactile_graph.pipeline.conditions.comparable import fields_hint, is_scalar
 from tactile_graph.pipeline.conditions.nonsense import (
     FUNCTIONS,
+    any_hint,
     no_arithmetic,
     no_call,
     no_truth,
@@ -332,7 +333,8 @@ class _Compiler:
                     f"{name}() is a yes or no; count() is a number", part.col_offset
                 )
             if not self.is_comparable(part):
-                raise ConditionError(self.not_comparable(part), getattr(node, "col_offset", 0))
+                words = self.not_comparable(part) + any_hint(node, part, self)
+                raise ConditionError(words, getattr(node, "col_offset", 0))
         words = ""
         if isinstance(node, ast.Compare):
             words = nonsense(node, self)

@@ -204,6 +204,22 @@ def _no_list(left: ast.expr, right: ast.expr, operator: ast.cmpop, reading: Read
     return f"'in' looks into a list, and {spelled} is a number; a list is written ({spelled},)"
 
 
+def any_hint(node: ast.expr, part: ast.expr, reading: Reading) -> str:
+    """Return how to look into a list that stands behind an ``in``; "" for anything else."""
+    if not isinstance(node, ast.Compare) or node.comparators != [part]:
+        return ""
+    of_item = list_item(reading.kind(part))
+    if of_item is None or not all(is_scalar(arm) for arm in arms(of_item)):
+        return ""
+    operator, left = node.ops[0], node.left
+    if not isinstance(operator, ast.In | ast.NotIn) or not isinstance(
+        left, ast.Name | ast.Constant
+    ):
+        return ""
+    no = "not " if isinstance(operator, ast.NotIn) else ""
+    return f"; write {no}any({reading.spell(part)} == {reading.spell(left)})"
+
+
 def _impossible(left: ast.expr, right: ast.expr, operator: ast.cmpop, reading: Reading) -> str:
     """Return the words for a text that a field never holds: one of a few is all it can be."""
     if not isinstance(operator, ast.Eq | ast.NotEq | ast.In | ast.NotIn):

@@ -43,10 +43,18 @@ class Embedding:
 
 
 def replaced_nodes(inner: Graph, given: Collection[str]) -> set[str]:
-    """Return the nodes that values take the place of, and those that only these need."""
+    """Return the nodes that values take the place of, and those that only these need.
+
+    With those go the nodes that read one of them though no output needs what they give.
+    """
     if not given:
         return set()
-    return {*given, *(_reached(inner, ()) - _reached(inner, given))}
+    needed = _reached(inner, given)
+    gone = _reached(inner, ()) - needed
+    for name, node in inner.nodes.items():  # each stands after what it reads
+        if name not in needed and any(r.node in gone - {*given} for r in node.wires()):
+            gone.add(name)
+    return {*given, *gone}
 
 
 def _reached(inner: Graph, closed: Collection[str]) -> set[str]:

@@ -11,6 +11,7 @@ import pytest
 
 from tactile_graph import Frame, Skip, load, loads
 from tactile_graph.errors import PipelineError
+from tactile_graph.pipeline.graph import FRAME
 from tactile_graph.pipeline.idle import idle_settings
 from tactile_graph.testing import isolated
 from tactile_graph.wires import Image, Mask
@@ -121,6 +122,20 @@ def test_a_setting_from_outside_of_a_node_that_does_not_run_is_refused(tmp_path:
         told = f"setting u/{name}: '{name.partition('.')[0]}' does not run: {why}"
         with pytest.raises(PipelineError, match=told):
             pipeline.with_settings({f"u/{name}": "square3" if "element" in name else 1})
+
+
+@pytest.mark.parametrize("more", ["", ", each: true"])
+def test_no_node_is_left_that_reads_one_that_is_gone(tmp_path: Path, more: str) -> None:
+    left = "  idle: {step: open, in: footprint}\n  idler: {step: open, in: idle}\noutputs"
+    (tmp_path / "left.yaml").write_text(INNER.replace("outputs", left))
+    nodes = CONTACTS + ALL + "  masks: {step: wide, in: objects.contacts, each: true}\n"
+    given = "masks" if more else "all"
+    nodes += f"  u: {{use: left.yaml, in: {{opened: {given}}}{more}}}"
+    pipeline = made(tmp_path, nodes)
+    inner = pipeline.nodes["u"].inner or pipeline
+    assert all(r.node in {FRAME, *inner.nodes} for n in inner.nodes.values() for r in n.wires())
+    assert [n for n in inner.nodes if n.endswith(("footprint", "idle", "idler"))] == []
+    assert any(n.endswith("load") for n in inner.nodes)  # it reads nothing that is gone
 
 
 @pytest.mark.slow

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
+from helpers_blocks import told
 from helpers_graphs import CALLS, STEPS, frame, registry
 from tactile_graph import Pipeline, loads
 from tactile_graph.engine.outcomes.outcome import NOT_ASKED, Failed, Skipped
@@ -109,3 +111,58 @@ outputs: [some]
     first, failed, last = alone["some"]
     assert (first, failed.origin, failed.item, last) == (3, "some", (1,), 5)
     assert [(f.origin, f.item) for f in alone.failures] == [("some", (1,))]
+
+
+def test_items_handed_on_are_told_in_the_plans_own_names() -> None:
+    lists = """\
+pipeline: p
+nodes:
+  number: {step: read, in: frame}
+  items: {step: many, in: number}
+  some: {step: picky, in: items, each: true, with: {bad: 2}}
+  more: {step: add1, in: some, each: true}
+  sum: {step: total, in: more}
+outputs: [more, sum]
+"""
+    own = loads(lists, "p.yaml", registry(STEPS))
+    recorded = loads(lists.replace("some", "few"), "p.yaml", registry(STEPS)).run(frame(3))
+    names = {name: name for name in own.nodes}
+    alone = Replay(make_plan(own, ("more", "sum")), {**names, "some": "few"})(recorded)
+    for name in ("more", "sum"):
+        assert told(alone.outcome(name)) == told(own.run(frame(3)).outcome(name))
+
+
+INNER = """\
+pipeline: inner
+nodes:
+  v: {step: read, in: frame}
+  x: {step: picky, in: v, with: {bad: 2}}
+  y: {step: add1, in: v, when: v > 100}
+  z: {step: picky, in: v, with: {bad: 1}}
+outputs: [x, y, z]
+"""
+OVER_LISTS = """\
+pipeline: p
+nodes:
+  number: {step: read, in: frame}
+  items: {step: many, in: number}
+  u: {use: inner, in: {frame: frame, v: items}, each: true}
+outputs: [u.x, u.y, u.z]
+"""
+
+
+def test_what_a_pipeline_over_a_list_lacks_is_told_as_the_plan_alone_tells_it(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "inner.yaml").write_text(INNER)
+    known = registry(STEPS, {"inner": tmp_path / "inner.yaml"})
+    own = loads(OVER_LISTS, "p.yaml", known)
+    other = loads(OVER_LISTS.replace(" u:", " w:").replace("u.", "w."), "p.yaml", known)
+    plan = make_plan(own, tuple(own.outputs))
+    alone = Replay(plan, {"number": "number", "items": "items", "u": "w"})(other.run(frame(3)))
+    expected = own.run(frame(3))
+    for name in ("u.x", "u.y", "u.z"):
+        assert told(alone.outcome(name)) == told(expected.outcome(name))
+    assert alone.outcome("u.x")[1].origin == "u/x"
+    assert alone.outcome("u.y").reason == "when v > 100 is false (v = 3)"
+    assert alone.outcome("u.z").origin == "u/z"

@@ -94,6 +94,30 @@ def test_a_guard_parts_a_block_and_a_declined_frame_goes_on_alone() -> None:
     assert 0 < len(block.alone) < len(frames) // 2
 
 
+def levels() -> list[int]:
+    return [1, 2, 3]
+
+
+OF_ITEMS = """
+pipeline: of_items
+nodes:
+  number: {step: read, in: frame}
+  known: {step: levels}
+  few: {step: many, in: number, when: number > 5}
+  some: {first_of: [few, known]}
+  a: {step: add1, in: number, when: all(known >= 1)}
+  b: {step: add1, in: number, when: all(some < 9)}
+  c: {step: add1, in: number, when: count(known >= 2) > 1 and number > 2}
+outputs: [a, b, c]
+"""
+
+
+def test_a_guard_over_a_list_that_is_the_same_in_all_frames_is_told_in_blocks() -> None:
+    pipeline = loads(OF_ITEMS, "p.yaml", registry({**STEPS, "levels": levels}))
+    results = assert_blocks_are_frames(pipeline, [frame(n, i) for i, n in enumerate(NUMBERS)])
+    assert [r["a"] for r in results] == [n + 1 for n in NUMBERS]
+
+
 def test_a_step_that_keeps_a_state_sees_the_frames_in_their_order() -> None:
     text = LADDER.replace(
         "outputs: [either, good]",

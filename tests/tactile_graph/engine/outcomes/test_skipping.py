@@ -496,6 +496,24 @@ def test_each_over_no_items_skips_and_over_failures_only_fails() -> None:
     assert isinstance(run(p, 3).outcome("e"), Failed)
 
 
+def test_each_item_takes_the_default_of_an_optional_port_whose_list_was_skipped() -> None:
+    nodes = f"{V}\nm: {{step: many, in: v}}\nl: {{step: many, in: v, when: v > 4}}"
+    p = make(f"{nodes}\ne: {{step: optional, in: [m, l], each: true}}", "e")
+    assert run(p, 3)["e"] == (3 - 7, 4 - 7, 5 - 7)
+    assert run(p, 7)["e"] == (0, 0, 0)
+    p = make(f"{nodes}\ne: {{step: options, in: {{b: l, a: m}}, each: true}}", "e")
+    assert run(p, 3)["e"] == (32, 42, 52)
+
+
+def test_each_is_skipped_where_no_list_is_left_to_run_over() -> None:
+    nodes = f"{V}\nl: {{step: many, in: v, when: v > 4}}"
+    for wires in ("optional, in: [v, l]", "options, in: [l, l]"):
+        p = make(f"{nodes}\ne: {{step: {wires}, each: true}}", "e")
+        outcome = run(p, 3).outcome("e")
+        assert (outcome.origin, outcome.reason) == ("l", "when v > 4 is false (v = 3)")
+        assert len(run(p, 7)["e"]) == 3
+
+
 def test_lists_of_different_length_at_one_node_fail() -> None:
     nodes = f"{V}\nw: {{step: add1, in: v}}\nm: {{step: many, in: v}}\nk: {{step: many, in: w}}"
     p = make(f"{nodes}\ne: {{step: add2, in: [m, k], each: true}}", "e")
