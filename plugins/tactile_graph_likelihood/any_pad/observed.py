@@ -23,7 +23,7 @@ from tactile_graph_likelihood.any_pad.shown import (
 )
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import OFF, ON, UNDER, UNKNOWN
-from tactile_graph_likelihood.single.readings import Gap, Readings, TurnOn, grid_of
+from tactile_graph_likelihood.single.readings import SOME, Gap, Readings, TurnOn, grid_of
 from tactile_graph_pads.circuits import Inverse
 from tactile_graph_pads.circuits.nearest import MOST_NOISES
 from tactile_graph_pads.pad import Pad
@@ -114,8 +114,10 @@ def observed(
     if not rise.above.size:
         raise Degenerate("the image has no element: no outline fits")
     found = _readings(image, pad, grid, rise, _known_loads(image, pad, rise, evened))
+    if found.touched > SOME and found.unheld is None:
+        found = uniform(found)
     if found.is_wide:
-        return uniform(found)._replace(gap=gap)
+        return found._replace(gap=gap)
     unsure_cm = UNSCALED_STD * float(grid[2]) if image.quantity in UNSCALED else 0.0
     return found._replace(gap=gap, length_std_cm=unsure_cm)
 

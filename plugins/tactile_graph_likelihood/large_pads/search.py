@@ -24,6 +24,7 @@ from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_re
 from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
 from tactile_graph_likelihood.single.problem import Problem, turned_as
 from tactile_graph_likelihood.single.search import (
+    begins_softly,
     likeliest_start,
     looked_at,
     outline_of_moments,
@@ -151,6 +152,18 @@ def attempted_on_large_pad(
         given, seen = start, Blocks(piece, blocks.block, blocks.load, blocks.moments)
     _start(problem, seen, given, table, attempt * TRIES, p)
     height = maximise_from_blocks(problem, blocks.block, p, root)
+    return looked_at(problem, p, root, height, least)
+
+
+@compiled_as_is
+def attempted_by_rim(
+    problem: Problem, table: Values, start: Values, attempt: int, least: float, p: Values,
+    root: Values,
+) -> tuple[float, float, GoodnessOfFit]:  # fmt: skip
+    """Do what `search.attempted` does, of an outline that is looked at by its rim."""
+    if begins_softly(problem, table, start, attempt, p):
+        maximise(softened(problem), nothing_covered(0), p, root, ROUGH, math.inf)
+    height = maximise(problem, empty_for(problem, p), p, root, ENOUGH, math.inf)
     return looked_at(problem, p, root, height, least)
 
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tactile_graph.compiled import Kernel
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image, Shape
 from tactile_graph_likelihood.geometry.outline_prior import LARGEST, SMALLEST
@@ -23,7 +24,11 @@ from tactile_graph_likelihood.geometry.outlines import (
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse, to_ellipses, to_oval
 from tactile_graph_likelihood.large_pads.covered_whole import covered_around
-from tactile_graph_likelihood.large_pads.search import attempted_on_large_pad, settled
+from tactile_graph_likelihood.large_pads.search import (
+    attempted_by_rim,
+    attempted_on_large_pad,
+    settled,
+)
 from tactile_graph_likelihood.large_pads.solid import least_shown
 from tactile_graph_likelihood.single.element_terms import LEAST, OFF, ON, States
 from tactile_graph_likelihood.single.even_points import even_points
@@ -44,6 +49,8 @@ from tactile_graph_likelihood.single.search import (
     attempted,
     moments,
 )
+
+Attempted = Kernel[..., tuple[float, float, GoodnessOfFit]]
 
 BLOCK = 32
 """Points between two looks at how sure the answer is."""
@@ -150,7 +157,7 @@ class Model:
         covariance is then wider by that of a normal distribution around the top.
         """
         problem = self._problem(readings, belief)
-        top = self._find(problem, self._begin(start, problem), EVERY, readings.is_wide)
+        top = self._find(problem, self._begin(start, problem), EVERY, _way_of(readings))
         if top.mode.height == -math.inf:
             raise self.impossible(readings)
         found = self._sampled(readings, problem, top.mode)
@@ -171,7 +178,7 @@ class Model:
         ``attempts`` are `FIRST`, `MORE` after it, or `EVERY` one.
         """
         problem = self._problem(readings)
-        return self._find(problem, self._begin(start, problem), attempts, readings.is_wide, before)
+        return self._find(problem, self._begin(start, problem), attempts, _way_of(readings), before)
 
     def likeliest_near(self, readings: Readings, point: Values | None = None) -> Likeliest:
         """Return the most likely outline near a point, shape (K,), that is nearly as likely.
@@ -180,14 +187,14 @@ class Model:
         """
         problem = self._problem(readings)
         attempt = 0 if readings.is_wide else NEAR
-        return self._find(problem, self._begin(point, problem), [attempt], readings.is_wide)
+        return self._find(problem, self._begin(point, problem), [attempt], _way_of(readings))
 
     def _find(
         self,
         problem: Problem,
         begin: Values,
         attempts: Sequence[int],
-        wide: bool,
+        way: Attempted,
         before: Likeliest | None = None,
     ) -> Likeliest:
         """Return the most likely outline of some attempts, and of what was found before."""
@@ -197,10 +204,9 @@ class Model:
         if before is not None:
             best, evidence, _, fit = before
         unsure = attempts[-1] + 1 < ATTEMPTS
-        attempt = attempted_on_large_pad if wide else attempted
         for which in attempts:
             p, root, known = np.zeros(n), np.zeros((n, n)), best.height
-            height, log, its = attempt.call(problem, table, begin, which, known, p, root)
+            height, log, its = way.call(problem, table, begin, which, known, p, root)
             if height > known:
                 best, evidence, fit = Mode(p, root, height), log, its
             again = which > 0 and abs(height - known) < SAME
@@ -261,7 +267,7 @@ class Model:
         self, readings: Readings, problem: Problem, mode: Mode, loose: float = 0.0
     ) -> Posterior:
         whole, table = None, self._table(problem)
-        if readings.is_wide:
+        if readings.by_rim or readings.is_wide:
             p, root = mode.p.copy(), mode.root.copy()
             if (height := settled.call(problem, p, root)) > -math.inf:
                 top = Mode(p, root, height)
@@ -362,6 +368,13 @@ class Model:
         if problem.kind == OVAL:
             to_oval.call(begin)
         return begin
+
+
+def _way_of(readings: Readings) -> Attempted:
+    """Return how an outline is searched for."""
+    if readings.is_wide:
+        return attempted_on_large_pad
+    return attempted_by_rim if readings.by_rim else attempted
 
 
 def _quiet(readings: Readings, noise: Values) -> tuple[Values, States]:

@@ -14,7 +14,7 @@ from tactile_graph.steps.rules import require_square
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.large_pads.solid import typical_load
-from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNKNOWN, States
+from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER, UNKNOWN, States
 from tactile_graph_likelihood.single.problem import LARGE_PAD
 
 FAINT = 0.015
@@ -22,9 +22,9 @@ FAINT = 0.015
 that is loaded up to its supply turns a converter's noise into 0.4 % on its idle elements."""
 LARGEST = 1e100
 """Reading beyond which no pad's unit can be; the squares of smaller ones are numbers."""
-MANY = 4096
-"""Touched elements beyond which an outline is searched for by blocks of them and by its rim, since
-it holds most of them whole."""
+SOME, MANY = 1500, 4096
+"""Touched elements beyond which an outline is looked at by its rim, since it holds most of them
+whole; and those beyond which it is searched for by blocks of them."""
 RANK = 8
 """Of the reading that stands for a loaded element: a grain of sand alone bears more than it."""
 
@@ -104,8 +104,18 @@ class Readings(NamedTuple):
 
     @property
     def is_wide(self) -> bool:
-        """Whether so much is touched that an outline is searched for by blocks and by its rim."""
+        """Whether so much is touched that an outline is searched for by blocks of elements."""
         return self.touched > MANY
+
+    @property
+    def by_rim(self) -> bool:
+        """Whether so much is touched that an outline is looked at by its rim.
+
+        All elements must show from the same load, and none be held to the most there is.
+        """
+        if self.touched <= SOME:
+            return False
+        return not ((self.states == UNDER) | (self.states == OVER)).any()
 
     @property
     def shows(self) -> NDArray[np.bool_]:

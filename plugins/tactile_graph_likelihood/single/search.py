@@ -240,17 +240,21 @@ def attempted(
         The mode's height, -inf where no outline is possible, the log evidence if the posterior were
         normal around it, and how well it fits.
     """
-    softly = attempt >= 0
-    if attempt <= 0 and start.shape[0] == p.shape[0]:
-        p[:] = start
-    else:
-        tries = TRIES if problem.kind in (DISC, RECTANGLE) else MANY_TRIES
-        likeliest_start(problem, table, max(attempt, 0) * tries, p)
-        softly = attempt > 0 or (attempt == 0 and problem.kind != DISC)
-    if softly:
+    if begins_softly(problem, table, start, attempt, p):
         maximise(softened(problem), None, p, root, ROUGH, math.inf)
     height = maximise(problem, None, p, root, ENOUGH, math.inf)
     return looked_at(problem, p, root, height, least)
+
+
+@compiled_as_is
+def begins_softly(problem: Problem, table: Values, start: Values, attempt: int, p: Values) -> bool:
+    """Write where `attempted` begins; return whether elements feel beyond their edge at first."""
+    if attempt <= 0 and start.shape[0] == p.shape[0]:
+        p[:] = start
+        return attempt >= 0
+    tries = TRIES if problem.kind in (DISC, RECTANGLE) else MANY_TRIES
+    likeliest_start(problem, table, max(attempt, 0) * tries, p)
+    return attempt > 0 or (attempt == 0 and problem.kind != DISC)
 
 
 @compiled_as_is

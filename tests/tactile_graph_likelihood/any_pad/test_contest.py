@@ -89,8 +89,8 @@ def test_a_quick_search_ends_where_its_first_attempt_finds_no_more(monkeypatch):
     """Of a kind that was looked at near its moments; otherwise all attempts follow."""
     find, asked = Model._find, []
 
-    def noted(self, problem, begin, attempts, wide, known=None):
-        found = find(self, problem, begin, attempts, wide, known)
+    def noted(self, problem, begin, attempts, way, known=None):
+        found = find(self, problem, begin, attempts, way, known)
         before = -np.inf if known is None else known.mode.height
         asked.append(
             (tuple(attempts), known is not None and attempts[0] == 0, found.mode.height - before)

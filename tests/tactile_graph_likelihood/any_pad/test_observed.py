@@ -11,7 +11,6 @@ from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.above_noise import AboveNoise, together
 from tactile_graph_likelihood.any_pad.observed import observed, uniform
 from tactile_graph_likelihood.any_pad.shown import ceiling_of, least_that_shows
-from tactile_graph_likelihood.single import readings
 from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER, UNKNOWN
 from tactile_graph_pads.pad import load_pad
 
@@ -164,7 +163,7 @@ def test_on_a_large_pad_one_least_load_stands_for_all(monkeypatch):
     assert set(np.unique(found.states)) == {OFF, ON}
     under = seen.logs[seen.states == UNDER]
     assert found.least_log == np.median(under)
-    monkeypatch.setattr(readings, "MANY", found.touched - 1)
+    monkeypatch.setattr("tactile_graph_likelihood.any_pad.observed.SOME", found.touched - 1)
     assert UNDER not in observed(image_of(values), PAD).states
 
 
