@@ -125,14 +125,17 @@ class _Around:
         its = self._weighed(best, shares)
         pressed = sum(share * self._wider(part) for part, share in shares.items())
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
+        unseen = self._hidden(its) + readings.length_std_cm**2
         whole = on_any_pad(
             its,
             evidence,
             pressed / sum(shares.values()),
             told.noise.sigma * float(readings.grid[2]) ** 1.5,
-            self._hidden(its) + readings.length_std_cm**2,
+            unseen,
             self._missed() if best == EVEN else 0.0,
             is_in_parts(readings.through_foam or readings),
+            # Learned gains leave so little that what is always unseen would look vague.
+            0.0 if self.fits.unevened is None else unseen,
         )
         if readings.filtered:
             whole = as_filtered(whole, float(readings.grid[2]))
