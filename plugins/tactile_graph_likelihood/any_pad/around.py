@@ -78,6 +78,11 @@ would come to, for a quick answer: between two rows of elements nothing holds it
 UNSUREST = 2.3
 """The same of a rectangle under a pressure, which has nine unknowns, for any other answer."""
 
+TWO, FEWEST_OF_TWO, WELL = 5.0, 12, 0.7
+"""Nats, over what neighbours share, by which two discs are likelier from which on an outline is
+taken for both of them; touched elements, at least; and a surprise that few outlines around two
+discs are above."""
+
 FEW_POINTS = 64
 """Points in which the posterior of what is rather noise is looked at, as wide as the pad."""
 
@@ -133,7 +138,7 @@ class _Around:
             told.noise.sigma * float(readings.grid[2]) ** 1.5,
             unseen,
             self._missed() if best == EVEN else 0.0,
-            is_in_parts(readings.through_foam or readings),
+            is_in_parts(readings.through_foam or readings) or self._is_two(),
             # Learned gains leave so little that what is always unseen would look vague.
             0.0 if self.fits.unevened is None else unseen,
         )
@@ -184,6 +189,23 @@ class _Around:
             return 0.0
         point = told.point_of(self.tops[EVEN])
         return max(lopsided.call(told.kind, point, readings.grid, readings.states), 0.0)
+
+    def _is_two(self) -> bool:
+        """Return whether two discs that touch are clearly likelier than all that was looked at.
+
+        Not asked of a disc, nor where an outline explains readings well, foam may fill a waist, or
+        few or more than 4096 are touched.
+        """
+        told, readings, even = self.fits.told, self.readings, self.tops[EVEN]
+        if told.kind == DISC or even.fit.surprise > WELL or readings.touched < FEWEST_OF_TWO:
+            return False
+        if self._is_wide or is_row(readings):
+            return False
+        if told.noise.foam_cm > 0.0 or readings.through_foam is not None:
+            return False
+        best = max(top.evidence for top in self.tops.values()) - even.evidence
+        worth = variance_inflation(even.fit.neighbours, readings.touched)
+        return self.fits.gain_by_two(readings, even) > best + TWO * worth
 
     def _foam_by_scatter(self) -> float:
         """Return by how much readings' scatter makes foam more probable than a round face."""

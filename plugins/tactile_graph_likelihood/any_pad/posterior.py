@@ -43,7 +43,8 @@ class AnyPadPosterior(Posterior):
     lopsided : float
         How much what the outline misses lies to a side, in standard deviations.
     in_parts : bool
-        Whether what is touched lies in parts, as of two objects.
+        Whether what is touched lies in parts, as of two objects, or is likelier two discs that
+        touch.
     filtered : bool
         Whether the image seems smoothed, median-filtered or enlarged: deviations are wider for it.
     """
@@ -65,8 +66,8 @@ class AnyPadPosterior(Posterior):
 
         They do not where they are less likely than the model's own, whatever is estimated with the
         outline; where strays on a bare pad explain them as well; where what the outline misses lies
-        to a side; where what is touched lies in parts; or where the centre's deviation is three and
-        a half times the usual one.
+        to a side; where what is touched is rather two objects; or where the centre's deviation is
+        three and a half times the usual one.
         """
         if self.surprise <= STRANGE or self.log_evidence <= 0.0:
             return False
