@@ -33,12 +33,12 @@ def led(
     plan : Plan
         What is run.
     run, block : callable
-        Run a frame, or a stack of frames if the source gives any, through the steps that keep
-        state, and note nothing of it.
+        Run a frame, or a stack of frames if the source was asked for stacks, through the steps
+        that keep state, and note nothing of it.
     """
     before = frames.next(span.start)
     if _leads(span.start, plan):
-        _lead(before, span.start, run, block or run)
+        _lead(before, span.start, run, block)
     else:
         for _ in before:
             pass
@@ -68,7 +68,7 @@ def _lead(
     frames: Iterator[Frame | FrameStack],
     n: int,
     run: Callable[[Frame], object],
-    block: Callable[[FrameStack], object],
+    block: Callable[[FrameStack], object] | None,
 ) -> None:
     """Show steps that keep state some frames."""
     from tactile_graph.compiled import warm_up
@@ -82,4 +82,7 @@ def _lead(
     for some in frames:
         for part in share.parts(some) if isinstance(some, FrameStack) else (some,):
             with suppress(RuleError):  # of another recording, as those of another pad
-                run(part) if isinstance(part, Frame) else block(part)
+                if isinstance(part, Frame):
+                    run(part)
+                elif block is not None:
+                    block(part)

@@ -83,6 +83,11 @@ UNSOUGHT = 0.5
 """By how much a radius or half a side grows with the gap of elements where that is not sought, as
 on wide outlines."""
 
+TWO, FEWEST_OF_TWO, WELL = 5.0, 12, 0.7
+"""Nats, over what neighbours share, by which two discs are likelier from which on an outline is
+taken for both of them; touched elements, at least; and a surprise that few outlines around two
+discs are above."""
+
 FEW_POINTS = 64
 """Points in which the posterior of what is rather noise is looked at, as wide as the pad."""
 
@@ -107,8 +112,8 @@ def posterior_around(
     -----
     The likeliest of the fits is sampled with the noise that it has found, an even face with the
     law's exponent; the others stand for themselves as normal distributions, by their evidence over
-    what neighbouring elements share. Where more than 4096
-    elements are touched a pattern that an even face leaves only widens the posterior.
+    what neighbouring elements share. Where more than 4096 elements are
+    touched a pattern that an even face leaves only widens the posterior.
     """
     return _Around(fits, readings, tops).posterior()
 
@@ -130,14 +135,17 @@ class _Around:
         its = self._weighed(best, shares)
         pressed = sum(share * self._wider(part) for part, share in shares.items())
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
+        unseen = self._hidden(its) + readings.length_std_cm**2
         whole = on_any_pad(
             its,
             evidence,
             pressed / sum(shares.values()),
             told.noise.sigma * float(readings.grid[2]) ** 1.5,
-            self._hidden(its) + readings.length_std_cm**2,
+            unseen,
             self._missed() if best == EVEN else 0.0,
-            is_in_parts(readings.through_foam or readings),
+            is_in_parts(readings.through_foam or readings) or self._is_two(),
+            # Learned gains leave so little that what is always unseen would look vague.
+            0.0 if self.fits.unevened is None else unseen,
         )
         if readings.filtered:
             whole = as_filtered(whole, float(readings.grid[2]))
@@ -188,6 +196,23 @@ class _Around:
             return 0.0
         point = told.point_of(self.tops[EVEN])
         return max(lopsided.call(told.kind, point, readings.grid, readings.states), 0.0)
+
+    def _is_two(self) -> bool:
+        """Return whether two discs that touch are clearly likelier than all that was looked at.
+
+        Not asked of a disc, nor where an outline explains readings well, foam may fill a waist, or
+        few or more than 4096 are touched.
+        """
+        told, readings, even = self.fits.told, self.readings, self.tops[EVEN]
+        if told.kind == DISC or even.fit.surprise > WELL or readings.touched < FEWEST_OF_TWO:
+            return False
+        if self._is_wide or is_row(readings):
+            return False
+        if told.noise.foam_cm > 0.0 or readings.through_foam is not None:
+            return False
+        best = max(top.evidence for top in self.tops.values()) - even.evidence
+        worth = variance_inflation(even.fit.neighbours, readings.touched)
+        return self.fits.gain_by_two(readings, even) > best + TWO * worth
 
     def _foam_by_scatter(self) -> float:
         """Return by how much readings' scatter makes foam more probable than a round face."""

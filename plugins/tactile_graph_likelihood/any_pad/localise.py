@@ -36,6 +36,7 @@ from tactile_graph_likelihood.any_pad.turn_on import (
     unbent,
 )
 from tactile_graph_likelihood.any_pad.unheld import unheld
+from tactile_graph_likelihood.any_pad.waist import gain_by_two
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, sizes, unknowns
 from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single.any_pressure import (
@@ -355,6 +356,10 @@ class AnyPad:
     @cached_property
     def _faint(self) -> Pattern:
         return FAINT._replace(fall=SHARPER) if self.told.kind == RECTANGLE else FAINT
+
+    def gain_by_two(self, readings: Readings, even: Likeliest) -> float:
+        """Return `gain_by_two` of an even face's most likely outline, which is no disc."""
+        return gain_by_two.call(self._fit(EVEN).problem(readings), even.mode.p)
 
     def reaches_beyond(self, readings: Readings, top: Likeliest) -> bool:
         """Return whether a most likely outline is partly beyond the pad's edge.

@@ -43,7 +43,8 @@ class AnyPadPosterior(Posterior):
     lopsided : float
         How much what the outline misses lies to a side, in standard deviations.
     in_parts : bool
-        Whether what is touched lies in parts, as of two objects.
+        Whether what is touched lies in parts, as of two objects, or is likelier two discs that
+        touch.
     filtered : bool
         Whether the image seems smoothed, median-filtered or enlarged: deviations are wider for it.
     """
@@ -65,8 +66,8 @@ class AnyPadPosterior(Posterior):
 
         They do not where they are less likely than the model's own, whatever is estimated with the
         outline; where strays on a bare pad explain them as well; where what the outline misses lies
-        to a side; where what is touched lies in parts; or where the centre's deviation is three and
-        a half times the usual one.
+        to a side; where what is touched is rather two objects; or where the centre's deviation is
+        three and a half times the usual one.
         """
         if self.surprise <= STRANGE or self.log_evidence <= 0.0:
             return False
@@ -83,6 +84,7 @@ def on_any_pad(
     hidden_cm2: float = 0.0,
     lopsided: float = 0.0,
     in_parts: bool = False,
+    excused_cm2: float = 0.0,
 ) -> AnyPadPosterior:
     """Return a posterior with another evidence, its variance inflated, its usual deviation told.
 
@@ -98,12 +100,15 @@ def on_any_pad(
         Variance of its lengths that no fit tells of, as where a pattern of the load is left over.
     lopsided, in_parts : float, bool
         As of `AnyPadPosterior`.
+    excused_cm2 : float
+        Of the hidden variance, what makes no answer vague: whether it ``fits`` is judged without.
     """
     size, usual = float(found.mean[2]), USUAL
     if found.kind != DISC:
         size, usual = math.sqrt(abs(size * float(found.mean[3]))), ALONG * USUAL
     values = fields_of(found)
-    values["usual_std_cm"] = usual * unevenness / math.sqrt(max(size, LEAST))
+    usual_cm = usual * unevenness / math.sqrt(max(size, LEAST))
+    values["usual_std_cm"] = math.hypot(usual_cm, math.sqrt(2.0 * excused_cm2) / VAGUE)
     values["log_evidence"] = log_evidence
     values |= _wider(found, inflation)
     if hidden_cm2 > 0.0:

@@ -293,6 +293,10 @@ class Model:
             f"{readings.touched} touched elements: no such outline on the pad explains them"
         )
 
+    def problem(self, readings: Readings) -> Problem:
+        """Return what is asked of some readings, as the kernels take it."""
+        return self._problem(readings)
+
     def _problem(self, readings: Readings, belief: Belief = None) -> Problem:
         noise, places, guess = self._noise_at(float(readings.grid[2]))
         if readings.least_log is not None:

@@ -71,10 +71,12 @@ def _by_objects(found: LearnedPad) -> Iterator[tuple[str, str]]:
     if found.gains is not None and found.gains.stand_out and found.silence is not None:
         good = found.elements.good
         low, high = np.quantile(found.elements.gain[good], [0.05, 0.95])
+        compared = int(np.isfinite(found.gains.halves[0]).sum())
         yield (
             "gains",
             f"{low:.2f} to {high:.2f} (5 to 95 % of elements) in {UNITS[found.loads]}; two halves "
-            f"of the frames agree by {found.gains.alike:.2f}",
+            f"of the frames agree by {found.gains.alike:.2f}, of the {compared} of {good.size} "
+            "elements that both compare with their neighbours often",
         )
     if found.gains is not None and np.isfinite(found.gains.sigma) and found.silence is not None:
         own = f"{found.gains.fixed:.0%} of its variance the pad's own"

@@ -273,3 +273,26 @@ def test_a_moved_posterior_keeps_its_region_about_its_centre(bench):
 def test_a_pad_without_a_correction_leaves_posteriors_as_they_are(pad):
     image = Image(np.zeros((16, 16)), (1.3, 1.3), (0.0, 0.0), "volt")
     assert Placing(load_pad(pad))(image, []) == []
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("warm_kernels")
+@pytest.mark.parametrize("quick", [False, True])
+def test_neither_an_untold_scale_nor_a_small_pattern_flags_what_learned_gains_even(tmp_path, quick):
+    bench = Bench(replace(BASE, fixed=1.0), np.random.default_rng(3))
+    path = with_gains(tmp_path, bench)
+    data = yaml.safe_load(path.read_text())
+    data["learned"] |= {"reading": "raw", "gain_of": "raw"}
+    path.write_text(yaml.safe_dump(data))
+    step = LocateDisc(settings=replace(ANY_PAD, pad=str(path), quick=quick))
+    gain = np.exp(bench.kind.sigma * bench.own)
+    rng, fine = np.random.default_rng(5), (np.arange(160) + 0.5) / 10.0
+    for _ in range(12):
+        x, y = rng.uniform(5.0, 11.0, 2)
+        covered = np.hypot(fine - x, fine[:, None] - y) < rng.uniform(3.0, 4.5)
+        history = 1.0 + 0.04 * np.sin(np.arange(16) + rng.uniform(0.0, 6.0))
+        loads = 60.0 * covered.reshape(16, 10, 16, 10).mean(axis=(1, 3)) * history
+        loads *= np.exp(0.04 * rng.standard_normal((16, 16)))
+        found = step(Image(bench.zero_v + gain * loads, (1.3, 1.3), (-0.15, -0.15), "raw"))
+        assert math.hypot(found.x_cm + 0.15 - 1.3 * x, found.y_cm + 0.15 - 1.3 * y) < 0.2
+        assert found.fits, (found.posterior.centre_std_cm, found.posterior.usual_std_cm)

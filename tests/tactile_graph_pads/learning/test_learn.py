@@ -110,6 +110,15 @@ def test_where_halves_of_the_frames_are_unlike_nothing_is_said_of_the_pads_own_u
 
 
 @pytest.mark.slow
+def test_on_how_many_elements_halves_of_the_frames_agree_is_told(tmp_path: Path) -> None:
+    found = learned(tmp_path, MadeUpPad(gain_sigma=0.4), lambda v: v, n=300)
+    assert found.gains is not None
+    compared = int(np.isfinite(found.gains.halves[0]).sum())
+    assert 0 < compared < 280
+    assert f"of the {compared} of 280 elements that both compare" in dict(summary(found))["gains"]
+
+
+@pytest.mark.slow
 def test_missing_elements_stay_missing(tmp_path: Path) -> None:
     def hole(values: np.ndarray) -> np.ndarray:
         out = values.copy()
