@@ -19,6 +19,7 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     strays_beyond,
     variance_inflation,
 )
+from tactile_graph_likelihood.any_pad.ghosts import as_ghostly
 from tactile_graph_likelihood.any_pad.left_open import (
     PATTERN,
     UNSEEN,
@@ -136,6 +137,8 @@ class _Around:
         )
         if readings.filtered:
             whole = as_filtered(whole, float(readings.grid[2]))
+        if readings.ghosts:
+            whole = as_ghostly(whole)
         whole = stretched(whole, readings)
         if is_row(readings):
             whole = within(whole, *told.range_cm(readings))

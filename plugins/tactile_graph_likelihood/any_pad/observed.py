@@ -23,8 +23,9 @@ from tactile_graph_likelihood.any_pad.shown import (
 )
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import OFF, ON, UNDER, UNKNOWN
-from tactile_graph_likelihood.single.readings import Gap, Readings, TurnOn, grid_of
+from tactile_graph_likelihood.single.readings import MANY, Gap, Readings, TurnOn, grid_of
 from tactile_graph_pads.circuits import Inverse
+from tactile_graph_pads.circuits.ghosts import GHOSTS, ghosts
 from tactile_graph_pads.circuits.nearest import MOST_NOISES
 from tactile_graph_pads.pad import Pad
 
@@ -157,7 +158,10 @@ def _readings(image: Image, pad: Pad, grid: Values, rise: Risen, told: _Loads) -
         values.setflags(write=False)
         filtered = is_filtered.direct(values, states, rise.zero, rise.least)
     across, down = image.pitch_cm
-    found = Readings(grid, logs, states, seen.size, down / across, edge, turn_on, filtered=filtered)
+    found = Readings(
+        grid, logs, states, seen.size, down / across, edge, turn_on, filtered=filtered,
+        ghosts=seen.size <= MANY and ghosts.call(loads, shows, known) == GHOSTS,
+    )  # fmt: skip
     if ceiling < math.inf and not found.is_wide:
         unheld = logs.copy()
         unheld[found.shows] = logs_seen
