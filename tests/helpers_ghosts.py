@@ -39,7 +39,7 @@ def divider(siemens: Array) -> Array:
 def share(lying: Sequence[tuple[float, float, float]]) -> Array:
     """Return the share of each element of 1 cm that discs (x, y, radius) cover."""
     y, x = np.meshgrid(PLACES, PLACES, indexing="ij")
-    over = sum(np.hypot(x - cx, y - cy) <= r for cx, cy, r in lying)
+    over = sum((np.hypot(x - cx, y - cy) <= r for cx, cy, r in lying), np.zeros(x.shape))
     return np.asarray(np.minimum(over, 1).reshape(SIDE, FINE, SIDE, FINE).mean(axis=(1, 3)))
 
 

@@ -33,6 +33,10 @@ LEAST_GHOST, STAND_OUT = 0.02, 2.0
 """Share of a loaded element's reading that ghosts reach, and how far they stand out of what is read
 beside the crossings."""
 
+LEAST_FRAMES, LEAST_SHARE, MOST_LOOKED_AT = 3, 0.5, 200
+"""Frames with ghosts, and their share of those that could tell, from which on a recording is said
+to hold some; and the frames of one that are looked at."""
+
 UNTOLD, NONE, GHOSTS = -1, 0, 1
 """What a frame comes to: nothing that could tell, no ghosts, some."""
 
@@ -166,6 +170,38 @@ def distances(loaded: Cells) -> NDArray[np.uint8]:
                         elif found[k, m] == 0:
                             found[k, m] = WITHIN_FAR
     return found
+
+
+def ghosts_in(
+    frames: Values, level: float, known: Cells, rest: Values | float = 0.0
+) -> tuple[int, int]:
+    """Return in how many frames there seem to be ghosts, and how many could tell.
+
+    Parameters
+    ----------
+    frames : ndarray, shape (frames, rows, columns)
+        Of many some are looked at.
+    level : float
+        Above ``rest``, from which on a reading is more than noise.
+    known : ndarray of bool, shape (rows, columns)
+        Elements that count.
+    rest : ndarray, shape (rows, columns), or float
+        What elements read that nothing touches.
+    """
+    some = frames[:: -(-len(frames) // MOST_LOOKED_AT) or 1]
+    found = [ghosts.call(its - rest, its - rest >= level, known) for its in some]
+    return found.count(GHOSTS), len(found) - found.count(UNTOLD)
+
+
+def ghosts_told(n_ghosts: int, n_telling: int) -> str:
+    """Return what to say of a recording by what `ghosts_in` found; empty where it is too little."""
+    if n_ghosts < max(LEAST_FRAMES, LEAST_SHARE * n_telling):
+        return ""
+    return (
+        f"{n_ghosts} of {n_telling} frames in which rows of one object cross columns of another "
+        "read something there, and not beside them: this may be a matrix without isolation; "
+        f"{ADVICE}"
+    )
 
 
 def _between(loaded: Cells, axis: int) -> Cells:

@@ -1,12 +1,22 @@
 """Readings where one object's rows cross another's columns: of a floating matrix, of no other."""
 
+import re
+
 import numpy as np
 import pytest
 
 from helpers_ghosts import DIAGONAL, SIDE, alone, divider, network, share
 from helpers_ghosts import read as image_of
 from helpers_modes import plainly
-from tactile_graph_pads.circuits.ghosts import EVERY, GHOSTS, NONE, UNTOLD, ghosts
+from tactile_graph_pads.circuits.ghosts import (
+    EVERY,
+    GHOSTS,
+    NONE,
+    UNTOLD,
+    ghosts,
+    ghosts_in,
+    ghosts_told,
+)
 
 
 def read(shares, **told):
@@ -70,3 +80,20 @@ def test_elements_that_do_not_count_tell_nothing():
     known = np.ones_like(shows)
     known[:8, 8:] = known[8:, :8] = False
     assert of(above, shows, known) == UNTOLD
+
+
+def recorded(circuit, lying, n=12):
+    """Return frames of an object and another on a diagonal of it, above what elements rest at."""
+    values = np.stack([image_of(share(lying), seed=k, circuit=circuit).values for k in range(n)])
+    return values - np.median(values[:, -3:])
+
+
+def test_several_frames_are_said_to_hold_ghosts():
+    every = np.ones((SIDE, SIDE), np.bool_)
+    assert ghosts_in(recorded(network, DIAGONAL), 2.5, every) == (12, 12)
+    assert ghosts_in(recorded(alone, DIAGONAL), 2.5, every) == (0, 12)
+    assert ghosts_in(recorded(network, DIAGONAL[:1]), 2.5, every) == (0, 0)
+    assert ghosts_in(np.empty((0, SIDE, SIDE)), 2.5, every) == (0, 0)
+    words = r"^12 of 20 frames .* may be a matrix without isolation; .*circuit: \{kind: floating"
+    assert re.search(words, ghosts_told(12, 20))
+    assert ghosts_told(2, 2) == ghosts_told(9, 20) == ghosts_told(0, 0) == ""
