@@ -28,6 +28,6 @@ def tells_of_ghosts(value: Any) -> str:
         return ""
     return (
         "elements read something where rows of one object cross columns of another, and not beside "
-        "them: this may be a matrix without isolation, whose ghosts make outlines larger and more; "
-        f"{ADVICE}"
+        "them: this may be a matrix without isolation, whose ghosts pass for objects or widen "
+        f"some; {ADVICE}"
     )

@@ -83,7 +83,7 @@ def _ghosts_plain(above: Values, shows: Cells, known: Cells) -> int:
     low = int(np.searchsorted(seen, 0.5 * seen[(9 * len(seen) - 9) // 10]))
     typical = float(seen[(low + len(seen)) // 2])
     loaded = shows & counts & (above >= LOADED * typical)
-    along = loaded.any(axis=1)[:, None] & loaded.any(axis=0)
+    along = np.logical_and.outer(loaded.any(axis=1), loaded.any(axis=0))
     near = _within(loaded, NEAR)
     crossings = along & counts & ~near & ~_between(loaded, 0) & ~_between(loaded, 1)
     beside = _within(loaded, FAR) & counts & ~near & ~along
