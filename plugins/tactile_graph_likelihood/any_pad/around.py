@@ -19,6 +19,7 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     strays_beyond,
     variance_inflation,
 )
+from tactile_graph_likelihood.any_pad.ghosts import as_ghostly
 from tactile_graph_likelihood.any_pad.left_open import (
     PATTERN,
     UNSEEN,
@@ -151,6 +152,8 @@ class _Around:
             whole = as_filtered(whole, float(readings.grid[2]))
         if readings.is_wide and readings.gap is not None and not readings.gap.is_told:
             whole = unsized(whole, UNSOUGHT * readings.gap.std_cm)
+        if readings.ghosts:
+            whole = as_ghostly(whole)
         whole = stretched(whole, readings)
         if is_row(readings):
             whole = within(whole, *told.range_cm(readings))

@@ -12,6 +12,7 @@ from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.around import posterior_around
 from tactile_graph_likelihood.any_pad.contest import tops_of_each
 from tactile_graph_likelihood.any_pad.first_fit import gains_hold
+from tactile_graph_likelihood.any_pad.ghosts import tells_of_ghosts
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, SoonSettings
@@ -62,6 +63,7 @@ class Locate:
     """
 
     stateless = True
+    notice = staticmethod(tells_of_ghosts)
 
     def __init__(
         self,

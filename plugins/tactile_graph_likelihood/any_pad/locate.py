@@ -8,6 +8,7 @@ from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.around import posterior_around
 from tactile_graph_likelihood.any_pad.first_fit import first_fit
+from tactile_graph_likelihood.any_pad.ghosts import tells_of_ghosts
 from tactile_graph_likelihood.any_pad.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.localise import AnyPad
 from tactile_graph_likelihood.any_pad.observed import NearlySquare
@@ -38,6 +39,7 @@ class LocateOne:
     """
 
     stateless = True
+    notice = staticmethod(tells_of_ghosts)
     _kind = DISC
 
     def __init__(self, settings: SoonSettings = ANY_PAD) -> None:

@@ -11,6 +11,7 @@ from annotated_types import Len
 from tactile_graph.errors import Degenerate
 from tactile_graph_filters.contacts.contacts import Contact
 from tactile_graph_likelihood.any_pad.choose import Locate, Name
+from tactile_graph_likelihood.any_pad.ghosts import tells_of_ghosts
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, AnyPadSettings
 from tactile_graph_likelihood.any_pad.observed import NearlySquare
 from tactile_graph_likelihood.single.likely import Likely
@@ -37,10 +38,12 @@ class LocateContacts:
     Notes
     -----
     Cells of other contacts say nothing of a contact; what shows beyond all of them may be a stray.
-    A contact that no shape explains is left out. See `locate_disc` for what is estimated.
+    A contact that no shape explains is left out. None fits where rows and columns of several seem
+    to make ghosts, as on a matrix without isolation. See `locate_disc` for what is estimated.
     """
 
     stateless = True
+    notice = staticmethod(tells_of_ghosts)
 
     def __init__(
         self,

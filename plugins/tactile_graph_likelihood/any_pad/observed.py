@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -23,8 +24,16 @@ from tactile_graph_likelihood.any_pad.shown import (
 )
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.element_terms import OFF, ON, UNDER, UNKNOWN
-from tactile_graph_likelihood.single.readings import SOME, Gap, Readings, TurnOn, grid_of
+from tactile_graph_likelihood.single.readings import (
+    MANY,
+    SOME,
+    Gap,
+    Readings,
+    TurnOn,
+    grid_of,
+)
 from tactile_graph_pads.circuits import Inverse
+from tactile_graph_pads.circuits.ghosts import GHOSTS, ghosts
 from tactile_graph_pads.circuits.nearest import MOST_NOISES
 from tactile_graph_pads.pad import Pad
 
@@ -159,7 +168,10 @@ def _readings(image: Image, pad: Pad, grid: Values, rise: Risen, told: _Loads) -
         values.setflags(write=False)
         filtered = is_filtered.direct(values, states, rise.zero, rise.least)
     across, down = image.pitch_cm
-    found = Readings(grid, logs, states, seen.size, down / across, edge, turn_on, filtered=filtered)
+    found = Readings(
+        grid, logs, states, seen.size, down / across, edge, turn_on, filtered=filtered,
+        ghosts=seen.size <= MANY and ghosts.call(loads, shows, known) == GHOSTS,
+    )  # fmt: skip
     if ceiling < math.inf and not found.is_wide:
         unheld = logs.copy()
         unheld[found.shows] = logs_seen
@@ -221,7 +233,7 @@ def _loads(
             if believed:
                 possible.setflags(write=False)
                 return _Loads(loads, least_loads, possible, shows)
-        elif (behind := _behind_noise(above, least_each, found, image.valid, pad)) is not None:
+        elif (behind := _behind_noise(image, above, least_each, found, pad)) is not None:
             siemens, least_s = behind
             loads = pad.law.load_of(siemens)
             possible = np.isfinite(loads)
@@ -231,21 +243,37 @@ def _loads(
 
 
 def _behind_noise(
-    above: Values, least: Values, missed: Inverse, valid: NDArray[np.bool_] | None, pad: Pad
+    image: Image, above: Values, least: Values, missed: Inverse, pad: Pad
 ) -> tuple[Values, Values] | None:
     """Return the conductances nearest to a floating circuit's volts, None if not within noise.
 
-    The second are those of elements each of which measures as ``least`` alone on the pad.
+    The second are those of elements each of which measures as ``least`` alone on the pad. Where
+    bare elements conduct much, readings are a network's with what these read alone; then loads are
+    what conducts more than they do, and than noise.
     """
-    circuit, noise_v = pad.circuit, pad.noise_v
-    if circuit.kind != "floating" or noise_v == 0.0 or not math.isfinite(missed.residual):
-        return None
-    seen = np.ones(above.shape, np.bool_) if valid is None else valid
-    found, off = circuit.nearest(above / circuit.supply_v, noise_v / circuit.supply_v, seen)
-    if off > MOST_NOISES:
+    circuit = pad.circuit
+    if circuit.kind != "floating" or pad.noise_v == 0.0 or not math.isfinite(missed.residual):
         return None
     ratio = least / circuit.supply_v
-    return found.siemens, ratio / (circuit.bias_ohm - circuit.series_ohm * ratio)
+    least_s = ratio / (circuit.bias_ohm - circuit.series_ohm * ratio)
+    siemens = _nearest(above, image.valid, pad)
+    if siemens is not None:
+        return siemens, least_s
+    siemens = _nearest(np.asarray(image.filled(0.0), np.float64), image.valid, pad)
+    if siemens is None:
+        return None
+    rise = risen(image.with_values(siemens, "siemens"), replace(pad, learned=None))
+    return rise.above, np.maximum(least_s, rise.least)
+
+
+def _nearest(volts: Values, valid: NDArray[np.bool_] | None, pad: Pad) -> Values | None:
+    """Return the conductances of a floating circuit that measure so, None if not within noise."""
+    circuit, ratio = pad.circuit, volts / pad.circuit.supply_v
+    if circuit.kind != "floating" or float(ratio.max()) >= circuit.bias_ohm / circuit.series_ohm:
+        return None
+    seen = np.ones(volts.shape, np.bool_) if valid is None else valid
+    found, off = circuit.nearest(ratio, pad.noise_v / circuit.supply_v, seen)
+    return found.siemens if off <= MOST_NOISES else None
 
 
 def uniform(readings: Readings) -> Readings:

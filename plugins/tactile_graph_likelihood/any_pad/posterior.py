@@ -47,6 +47,8 @@ class AnyPadPosterior(Posterior):
         touch.
     filtered : bool
         Whether the image seems smoothed, median-filtered or enlarged: deviations are wider for it.
+    ghosts : bool
+        Whether the frame looks as if it was read from a matrix without isolation, see `ghosts`.
     """
 
     usual_std_cm: float = math.inf
@@ -54,6 +56,7 @@ class AnyPadPosterior(Posterior):
     lopsided: float = 0.0
     in_parts: bool = False
     filtered: bool = False
+    ghosts: bool = False
 
     @property
     def independent_points(self) -> float:
@@ -66,12 +69,12 @@ class AnyPadPosterior(Posterior):
 
         They do not where they are less likely than the model's own, whatever is estimated with the
         outline; where strays on a bare pad explain them as well; where what the outline misses lies
-        to a side; where what is touched is rather two objects; or where the centre's deviation is
-        three and a half times the usual one.
+        to a side; where what is touched is rather two objects, or seems to hold ghosts; or where
+        the centre's deviation is three and a half times the usual one.
         """
         if self.surprise <= STRANGE or self.log_evidence <= 0.0:
             return False
-        if self.lopsided >= LOPSIDED or self.in_parts:
+        if self.lopsided >= LOPSIDED or self.in_parts or self.ghosts:
             return False
         return self.centre_std_cm < VAGUE * self.usual_std_cm
 
@@ -117,7 +120,7 @@ def on_any_pad(
         values["covariance"] = covariance
     values["evenly"] = DISC_EVENLY if found.kind == DISC else 1.0
     values["lopsided"], values["in_parts"] = lopsided, in_parts
-    values["filtered"] = False
+    values["filtered"] = values["ghosts"] = False
     its = object.__new__(AnyPadPosterior)
     vars(its).update(values)  # a frozen dataclass sets its fields one by one, by a call each
     return its

@@ -20,6 +20,7 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     learned,
     variance_inflation,
 )
+from tactile_graph_likelihood.any_pad.ghosts import as_ghostly, tells_of_ghosts
 from tactile_graph_likelihood.any_pad.observed import NearlySquare, gap_by, observed, uniform
 from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, unsized, within
 from tactile_graph_likelihood.any_pad.through_foam import without_foam
@@ -85,11 +86,13 @@ class LocateObjects:
     seen. Gains and voids are those of what the outlines cover whole, all objects together, beside
     what the pad says; where they differ much the search goes on from there. Readings at the end of
     their range count as loads. ``fits`` is False, too, where three elements side by side are
-    touched and no object is found there; and more objects than ``most`` that lie apart lower
+    touched and no object is found there, or where rows and columns of several seem to make ghosts,
+    as on a matrix without isolation; and more objects than ``most`` that lie apart lower
     ``count_probability``. The order of the shapes means nothing: `track` keeps who is who.
     """
 
     stateless = True
+    notice = staticmethod(tells_of_ghosts)
 
     def __init__(
         self,
@@ -141,6 +144,8 @@ class LocateObjects:
         vague = float(np.mean([its.centre_std_cm for its in placed])) >= VAGUE * pitch
         if readings.filtered:
             placed = [as_filtered(its, pitch) for its in placed]
+        if readings.ghosts:
+            placed = [as_ghostly(its) for its in placed]
         shapes = [stretched(unsized(its, unsure_cm), readings) for its in placed]
         return Footprints(
             tuple(likely(shape) for shape in shapes),
@@ -152,6 +157,7 @@ class LocateObjects:
             and found.count_probability > LIKELY
             and not overlooked(problem, found)
             and not vague
+            and not readings.ghosts
             and not enclose(found),
         )
 

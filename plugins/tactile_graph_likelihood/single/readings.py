@@ -80,7 +80,8 @@ class Readings(NamedTuple):
     where some are held to the load at which readings end, and ``noise`` the deviation of a load
     there; ``gap`` what is believed of elements'
     gap, where that was not said; ``length_std_cm`` how uncertain it leaves the lengths of an
-    outline; ``filtered`` whether readings are not each their own, see `is_filtered`.
+    outline; ``filtered`` whether readings are not each their own, see `is_filtered`; ``ghosts``
+    whether they look as on a matrix without isolation, see `ghosts`.
     """
 
     grid: Values
@@ -96,6 +97,7 @@ class Readings(NamedTuple):
     gap: Gap | None = None
     length_std_cm: float = 0.0
     filtered: bool = False
+    ghosts: bool = False
 
     @property
     def size_cm(self) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
 from tactile_graph.quantities import unit_of
+from tactile_graph_pads.circuits.ghosts import ghosts_in, ghosts_told
 from tactile_graph_pads.defects import Defects
 from tactile_graph_pads.learned import GOOD, Elements, Learned, Reading, TurnOn
 from tactile_graph_pads.learning.force_curve import ForceCurve, force_curve
@@ -286,6 +287,7 @@ def _of_objects(
     place = _place(objects, seen, places, learned.touched_from, notes)
     notes += _weights_note(objects, curve) + _turn_on_note(seen.turn_on)
     notes += _silence_note(seen.silence) + _unevenness_note(seen.gains, known.loads)
+    notes += _ghosts_note(bare, shows_from, known)
     return LearnedPad(
         learned, _elements(rest, seen.silence, seen.gains.gain), rest, seen.silence, seen.gains,
         known.loads, seen.under, curve, place, right, tuple(notes),
@@ -480,6 +482,14 @@ def _silence_note(found: Silence) -> list[str]:
         "for dead. So does what nothing ever loads, as an insole under the arch: where that may "
         "be, press there, and learn again."
     ]
+
+
+def _ghosts_note(bare: Array, shows_from: float, known: _KnownPad) -> list[str]:
+    """Return what to say where readings hold ghosts that the told pad does not take out."""
+    if known.base is not None and known.base.circuit.kind == "floating":
+        return []
+    told = ghosts_told(*ghosts_in(bare, shows_from, known.rest.good))
+    return [f"{told}. Gains, unevenness and law are learned of ghosts, too."] if told else []
 
 
 def _turn_on_note(found: TurnOn | None) -> list[str]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.wires import Frame
+from tactile_graph_pads.circuits.ghosts import ghosts_in
 from tactile_graph_sources.readers.sequence.leaps import is_leap
 
 Stack = NDArray[np.float64]
@@ -80,6 +81,8 @@ class Measured:
         Above the offset: five times the noise, or a twentieth of the highest reading.
     n_lasting : int
         Those that are there in every frame, as what lies on the pad from first to last.
+    n_ghosts, n_telling : int
+        Frames that look as on a matrix without isolation, and those that could tell.
     n_gaps, n_truths : int
         Frames that follow a gap, and that carry truth.
     """
@@ -104,6 +107,8 @@ class Measured:
     n_contacts: tuple[int, ...]
     contact_level: float
     n_lasting: int
+    n_ghosts: int
+    n_telling: int
     n_gaps: int
     n_truths: int
 
@@ -170,6 +175,7 @@ def measure(frames: Sequence[Frame]) -> Measured:
             tuple(_contacts(f - np.where(lasting, offset, idle), level) for f in filled),
             level,
             n_lasting,
+            *_ghosts(filled, idle, level, alive & ~stuck),
             sum(f.gap for f in frames),
             sum(f.truth is not None for f in frames),
         )
@@ -343,6 +349,17 @@ def _contacts(above: Stack, level: float) -> int:
     if level <= 0.0 or not n:
         return 0
     return int(np.count_nonzero(np.bincount(labels.ravel())[1:] >= SMALLEST_CONTACT))
+
+
+def _ghosts(filled: Stack, idle: Stack, level: float, good: NDArray[np.bool_]) -> tuple[int, int]:
+    """Return what `ghosts_in` does; cells that something always loads rest where others do.
+
+    Ghosts make cells at rest few: it is the lower quarter that tells where.
+    """
+    if not good.any() or level <= 0.0:
+        return 0, 0
+    offset = float(np.quantile(idle[good], QUIET))
+    return ghosts_in(filled, level, good, np.where(idle > offset + level, offset, idle))
 
 
 class _Pace(NamedTuple):

@@ -12,6 +12,7 @@ import numpy as np
 from tactile_graph.quantities import unit_of
 from tactile_graph.steps.injected import MOST_TOLD
 from tactile_graph.wires import Frame
+from tactile_graph_pads.circuits.ghosts import ghosts_told
 from tactile_graph_sources.inspection.look import Looked, Sensor
 from tactile_graph_sources.inspection.measure import Cells, Measured
 
@@ -107,6 +108,8 @@ def _sensor(sensor: Sensor, looked: Looked) -> Iterator[str]:
         f"{median(n):g} a frame as a rule, {min(n)} to {max(n)}{lasting} (patches of two cells or"
         f" more that rise {_number(measured.contact_level)} {unit} above rest)",
     )
+    if told := ghosts_told(measured.n_ghosts, measured.n_telling):
+        yield _line("ghosts", told)
 
 
 def _recorded(looked: Looked) -> Iterator[str]:

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from helpers_ghosts import DIAGONAL, REFERENCE, read, share
 from helpers_modes import plainly
 from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Image
@@ -233,3 +234,22 @@ def test_ghosts_of_a_floating_circuit_do_not_show_in_spite_of_noise():
     assert on[inside].mean() > 0.9
     assert on[~inside].mean() < 0.03
     assert np.median(np.abs(found.logs - np.log(np.maximum(load, 1.0)))[on & inside]) < 0.05
+
+
+@pytest.mark.slow  # the inverse takes a while
+def test_ghosts_come_out_where_bare_elements_of_a_floating_circuit_conduct_too():
+    """What they read is no offset: without it the readings are no network's."""
+    told = {
+        "geometry": {"rows": 16, "columns": 16, "element_cm": 1.0, "gap_cm": 0.0},
+        "circuit": {"kind": "floating", "bias_ohm": 1.0 / REFERENCE, "supply_v": 5.0},
+        "converter": {"bits": 8, "low_v": 0.0, "high_v": 5.0},
+        "scan": {"noise_v": 0.01},
+    }
+    shares, pad = share(DIAGONAL), load_pad(told)
+    counts = read(shares, rest=2e-6)
+    image = Image(np.maximum(counts.values - 2.0, 0.0) * 5.0 / 255.0, (1.0, 1.0), quantity="volt")
+    untold, found = observed(counts, pad), observed(image, pad)
+    assert (untold.states == ON)[shares == 0.0].mean() > 0.2
+    assert (found.states == ON)[shares > 0.9].all()
+    assert (found.states == ON)[shares == 0.0].mean() < 0.03
+    assert not found.ghosts

@@ -8,12 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from helpers_ghosts import DIAGONAL, alone, network, read, share
 from helpers_learning import MadeUpPad
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
+from tactile_graph_pads.circuits import Floating
 from tactile_graph_pads.learning.learn import LearnedPad, learn_pad
 from tactile_graph_pads.learning.recordings import Stack, off_pad, read_places, read_stack
 from tactile_graph_pads.learning.summary import summary
+from tactile_graph_pads.pad import load_pad
 from tactile_graph_sources.writers.write_npz import write_npz
 
 
@@ -157,3 +160,27 @@ def test_places_off_the_pad_are_counted_and_the_first_named(tmp_path: Path) -> N
     )
     assert said.endswith("are these mm?")
     assert off_pad(read_stack([(path, None)])) == ""
+
+
+def test_a_matrix_without_isolation_is_told_of(tmp_path: Path) -> None:
+    """Unless the pad that is told takes the ghosts out."""
+
+    def recorded(name: str, shares: np.ndarray, circuit: object) -> Stack:
+        values = [read(shares, seed=k, circuit=circuit).values for k in range(20)]  # type: ignore[arg-type]
+        return stack(tmp_path / name, [Frame.of(v, quantity="raw") for v in values])
+
+    for circuit, is_told in ((network, True), (alone, False)):
+        empty, objects = (
+            recorded(f"{circuit.__name__}{k}.npz", share(lying), circuit)
+            for k, lying in enumerate(([], DIAGONAL))
+        )
+        notes = [n for n in learn_pad(empty, objects).notes if "without isolation" in n]
+        assert len(notes) == is_told
+        assert all("20 of 20 frames" in n and "kind: floating" in n for n in notes)
+    base = replace(load_pad("plain"), circuit=Floating())
+    empty, objects = (
+        recorded("e.npz", share([]), network),
+        recorded("o.npz", share(DIAGONAL), network),
+    )
+    told = replace(base, geometry=replace(base.geometry, element_cm=1.0, gap_cm=0.0))
+    assert not [n for n in learn_pad(empty, objects, told).notes if "without isolation" in n]

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from helpers_ghosts import DIAGONAL, alone, network, read, share
 from tactile_graph.wires import Frame
 from tactile_graph_sources.inspection import measure as measuring
 from tactile_graph_sources.inspection.measure import measure
@@ -82,3 +83,14 @@ def test_frames_are_measured_in_little_more_memory_than_they_take(kind: str, mos
     finally:
         tracemalloc.stop()
     assert peak < most * values.nbytes
+
+
+@pytest.mark.parametrize("still", [False, True])
+def test_frames_of_a_matrix_without_isolation_are_counted(still: bool) -> None:
+    """Whether objects come and go, or lie there from first to last."""
+    bare, lying = share([]), share(DIAGONAL)
+    for circuit, n_ghosts in ((network, 8), (alone, 0)):
+        order = [lying] * 8 if still else [bare] * 12 + [lying] * 8
+        films = [read(its, seed=k, circuit=circuit) for k, its in enumerate(order)]
+        found = measure([Frame.of(its.values, index=k) for k, its in enumerate(films)])
+        assert (found.n_ghosts, found.n_telling) == (n_ghosts, 8)
