@@ -88,17 +88,20 @@ def _ghosts_plain(above: Values, shows: Cells, known: Cells) -> int:
     crossings = along & counts & ~near & ~_between(loaded, 0) & ~_between(loaded, 1)
     beside = _within(loaded, FAR) & counts & ~near & ~along
     n, m = int(np.count_nonzero(crossings)), int(np.count_nonzero(beside))
-    if min(n, m) < FEWEST:
+    if n < FEWEST:
         return UNTOLD
     level = np.where(shows, above, 0.0)
     ghost = np.sort(level[crossings])[int(MOST_SILENT * n)]
-    other = np.sort(level[beside])[m // 2]
-    return GHOSTS if ghost > max(LEAST_GHOST * typical, STAND_OUT * other) else NONE
+    if ghost <= LEAST_GHOST * typical:
+        return NONE
+    if m < FEWEST:
+        return UNTOLD
+    return GHOSTS if ghost > STAND_OUT * np.sort(level[beside])[m // 2] else NONE
 
 
 @compiled_twin_of(_ghosts_plain)
 def ghosts(above, shows, known):  # type: ignore[no-untyped-def]
-    """Do the same in loops, which end where there are no crossings."""
+    """Do the same in loops, which end where no crossing could tell."""
     (rows, columns), every = above.shape, known.size == 0
     seen, total = np.empty(above.size), 0
     for i in range(rows):
@@ -120,7 +123,7 @@ def ghosts(above, shows, known):  # type: ignore[no-untyped-def]
                 loaded[i, j] = True
                 left[i], right[i] = min(left[i], j), j
                 top[j], bottom[j] = min(top[j], i), i
-    crossing, n = np.empty(above.size), 0
+    crossing, n, silent = np.empty(above.size), 0, 0
     for i in range(rows):
         for j in range(columns):
             if right[i] < 0 or bottom[j] < 0 or not (every or known[i, j]):
@@ -128,9 +131,12 @@ def ghosts(above, shows, known):  # type: ignore[no-untyped-def]
             if left[i] <= j <= right[i] or top[j] <= i <= bottom[j] or is_near(loaded, i, j):
                 continue
             crossing[n] = above[i, j] if shows[i, j] else 0.0
+            silent += 1 if crossing[n] <= LEAST_GHOST * typical else 0
             n += 1
     if n < FEWEST:
         return UNTOLD
+    if silent > int(MOST_SILENT * n):
+        return NONE
     away, beside, m = distances(loaded), np.empty(above.size), 0
     for i in range(rows):
         for j in range(columns):
@@ -141,7 +147,7 @@ def ghosts(above, shows, known):  # type: ignore[no-untyped-def]
     if m < FEWEST:
         return UNTOLD
     ghost, other = np.sort(crossing[:n])[int(MOST_SILENT * n)], np.sort(beside[:m])[m // 2]
-    return GHOSTS if ghost > max(LEAST_GHOST * typical, STAND_OUT * other) else NONE
+    return GHOSTS if ghost > STAND_OUT * other else NONE
 
 
 @compiled_later
