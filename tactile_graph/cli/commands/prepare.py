@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import os
 import time
+from collections.abc import Iterator
 from contextlib import ExitStack
+from heapq import heappush, heappushpop
 from itertools import islice
+from operator import itemgetter
+from typing import TYPE_CHECKING
 
 import click
 
@@ -16,7 +20,13 @@ from tactile_graph.out_of_reach import end_safe_path, safe_path
 from tactile_graph.plugins import registry
 from tactile_graph.plugins.devices import reads_device
 
+if TYPE_CHECKING:
+    from tactile_graph.api.pipeline import Pipeline
+    from tactile_graph.wires.frame import Frame
+
 FAILED = "not prepared"
+MOST_LOOKED_AT = 10_000
+"""Frames of a recording among which the most loaded ones are looked for."""
 
 
 @click.command()
@@ -28,7 +38,14 @@ FAILED = "not prepared"
     show_default="one for each processor",
     help="Processes that compile at the same time.",
 )
-def prepare(pipelines: tuple[str, ...], jobs: int) -> None:
+@click.option(
+    "--recording",
+    metavar="FILE",
+    type=click.Path(),
+    help="Run frames of this recording, the first and the most loaded ones, instead of each "
+    "pipeline's own: wide contacts on large pads need machine code of their own.",
+)
+def prepare(pipelines: tuple[str, ...], jobs: int, recording: str | None) -> None:
     """Compile the kernels of pipelines now; without any named, of all installed.
 
     Runs the first frames of each pipeline's own source, and keeps the machine code on disk. What
@@ -46,17 +63,21 @@ def prepare(pipelines: tuple[str, ...], jobs: int) -> None:
         raise UsageError("name a pipeline or a file of one: no plugin offers any")
     for name in pipelines:
         load(name)
+    if recording is not None:
+        if not pipelines:
+            raise UsageError("name the pipelines that are prepared by --recording")
+        next(_reading(load(pipelines[0]), recording).frames(), None)
     out = console()
     if jobs == 1:
         for name in names:
-            out.print(prepared(name), soft_wrap=True, highlight=False)
+            out.print(prepared(name, recording), soft_wrap=True, highlight=False)
         return
     with ExitStack() as opened:
         with safe_path():
             spawn, given = get_context("spawn"), (registry.selected(),)
             pool = ProcessPoolExecutor(min(jobs, len(names)), spawn, _begin, given)
             opened.enter_context(pool)
-            coming = [pool.submit(prepared, name) for name in names]
+            coming = [pool.submit(prepared, name, recording) for name in names]
         for done in as_completed(coming):
             out.print(done.result(), soft_wrap=True, highlight=False)
 
@@ -66,8 +87,8 @@ def _begin(selection: str) -> None:
     registry.restrict(selection)
 
 
-def prepared(name: str) -> str:
-    """Compile what a pipeline's first frames need; return what to say of it."""
+def prepared(name: str, recording: str | None = None) -> str:
+    """Compile what a pipeline's first frames need, or a recording's; return what to say of it."""
     from tactile_graph.api.pipeline import load
     from tactile_graph.compiled import warm_up
     from tactile_graph.compiled.preparing import preparing
@@ -78,13 +99,15 @@ def prepared(name: str) -> str:
     warm_up()
     try:
         pipeline = load(name)
+        if recording is not None:
+            pipeline = _reading(pipeline, recording)
         if pipeline.source is None:
             return f"{name}: {FAILED}, declares no source"
         if reads_device(pipeline.source.name):
             return f"{name}: {FAILED}, its source reads a device"
         if pipeline.writes:
             return f"{name}: {FAILED}, a step of it writes"
-        frames = [*islice(pipeline.frames(), FRAMES)]
+        frames = _telling(pipeline.frames(), 0 if recording is None else MOST_LOOKED_AT)
         n = sum(1 for _ in pipeline.stream(frames))
         runner = pipeline.runner()
         for stack in in_stacks(frames) if runner.in_blocks else ():
@@ -95,3 +118,25 @@ def prepared(name: str) -> str:
     if preparing.not_kept:
         return f"{name}: {FAILED}, {preparing.not_kept}"
     return f"{name}: prepared by {n} frames in {time.monotonic() - start:.1f} s"
+
+
+def _reading(pipeline: Pipeline, recording: str) -> Pipeline:
+    from tactile_graph.cli.arguments import Span, source_named
+
+    source = source_named(pipeline, [recording], None, (), Span())
+    return pipeline if source is None else pipeline.with_source(source[0], **source[1])
+
+
+def _telling(frames: Iterator[Frame], n: int) -> list[Frame]:
+    """Return the first frames, and of so many that follow the most loaded ones, in their order."""
+    import numpy as np
+
+    first = [*islice(frames, FRAMES)]
+    most: list[tuple[float, int, Frame]] = []
+    for i, frame in enumerate(islice(frames, n)):
+        its = (float(np.nansum(frame.image.filled(0.0))), i, frame)
+        if len(most) < FRAMES:
+            heappush(most, its)
+        else:
+            heappushpop(most, its)
+    return first + [frame for _, _, frame in sorted(most, key=itemgetter(1))]

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from helpers_cli import DISCS, install
+from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.cli.ahead import opened
 from tactile_graph.cli.app import cli
 from tactile_graph.cli.commands.prepare import FRAMES, prepared
-from tactile_graph.wires import Mask
+from tactile_graph.wires import Frame, Mask
 
 PLAIN = """\
 pipeline: dim
@@ -31,6 +34,35 @@ def written(folder: Path, text: str) -> str:
 @pytest.mark.usefixtures("hand_made")
 def test_frames_of_a_pipelines_own_source_are_run() -> None:
     assert prepared("discs").startswith("discs: prepared by 4 frames in ")
+
+
+def test_the_first_and_the_most_loaded_frames_of_a_recording_are_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sums = np.r_[np.ones(FRAMES), np.arange(40) % 20]
+    values = sums[:, None, None] * np.ones((1, 4, 4))
+    np.savez(tmp_path / "film.npz", values=values, pitch_cm=1.0, quantity="volt")
+    run: list[float] = []
+    stream = Pipeline.stream
+
+    def noted(self: Pipeline, frames: list[Frame]) -> Any:
+        run.extend(float(frame.image.values[0, 0]) for frame in frames)
+        return stream(self, frames)
+
+    monkeypatch.setattr(Pipeline, "stream", noted)
+    path = written(tmp_path, PLAIN)
+    said = prepared(path, str(tmp_path / "film.npz"))
+    assert said.startswith(f"{path}: prepared by {2 * FRAMES} frames in ")
+    assert run == [1.0] * FRAMES + [15.0, 16.0, 17.0, 18.0, 19.0] * 2
+
+
+def test_a_recording_is_for_pipelines_that_are_named(tmp_path: Path) -> None:
+    got = CliRunner().invoke(cli, ["prepare", "--recording", str(tmp_path / "film.npz")])
+    assert got.exit_code == 2
+    assert "name the pipelines" in got.stderr
+    got = CliRunner().invoke(cli, ["prepare", "circle-3", "--recording", "film.npz", "--jobs", "1"])
+    assert got.exit_code == 2
+    assert "film.npz: there is no such file" in got.stderr
 
 
 @pytest.mark.usefixtures("hand_made")
