@@ -11,7 +11,6 @@ from tactile_graph.errors import DataError
 from tactile_graph.foreign_text import pasted
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
-from tactile_graph.wires.frame_stack import FrameStack
 from tactile_graph_sources.stores.stored import UNSURE, Lost, Stored, open_stored
 
 
@@ -34,16 +33,31 @@ def read_store(path: str | Path, report: Report | None = None, start: int = 0) -
     UsageError
         If Zarr is not installed.
     """
-    return _whole(Path(path), report, start, in_stacks=False)
+    yield from frames_of(open_stored(Path(path)), Path(path), report, start)
 
 
-def read_store_in_stacks(path: str | Path, report: Report) -> Iterator[Frame | FrameStack]:
-    """Yield what `read_store` does, many at once where nothing is to be said of single frames."""
-    return _whole(Path(path), report, 0, in_stacks=True)
+def frames_of(
+    stored: Stored,
+    path: Path,
+    report: Report | None,
+    start: int = 0,
+    in_stacks: bool = False,
+) -> Iterator[Any]:
+    """Yield what `read_store` does of a store that is opened.
 
+    Parameters
+    ----------
+    stored : Stored
+    path, report, start
+        As of `read_store`.
+    in_stacks : bool
+        Yield many at once where nothing is to be said of single frames.
 
-def _whole(path: Path, report: Report | None, start: int, in_stacks: bool) -> Iterator[Any]:
-    stored = open_stored(path)
+    Raises
+    ------
+    DataError
+        If nothing of it can be read.
+    """
     if report is not None:
         report.expect(max(0, stored.n_frames - start))
         _tell_damage(stored, report)

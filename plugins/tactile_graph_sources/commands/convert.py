@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, closing
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -104,7 +104,7 @@ def convert(
             frames = kept.until_ended(frames, report)
         about = ", ".join(r.name for r in recordings) or str(source)
         with opened:
-            n = writer.write(target, kept.watch(islice(frames, n_frames)), about)
+            n = _written(writer, target, kept.watch(islice(frames, n_frames)), about, report)
     except ValueError as error:
         raise UsageError(str(error)) from error
     if n or kept.ended is None:
@@ -172,6 +172,17 @@ def _frames(
     else:
         given = as_many(source, given, n_frames)
     return frames_of_source(source or "recording", given, report, seed)
+
+
+def _written(
+    writer: RecordingWriter, target: Path, frames: Iterator[Frame], about: str, report: Report
+) -> int:
+    """Write frames, a pitch that is assumed as such; return how many there were."""
+    from tactile_graph_sources.readers.reading import PITCH_UNTOLD
+
+    first = list(islice(frames, 1))  # with it is known whether anybody says the pitch
+    write = writer.write_untold if PITCH_UNTOLD in report.counts else None
+    return (write or writer.write)(target, chain(first, frames), about)
 
 
 class _Carried:

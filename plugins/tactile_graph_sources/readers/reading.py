@@ -23,6 +23,7 @@ from tactile_graph_sources.readers.words.told import Told
 
 OF_TIMES = ("time_unit", "time_format")
 """Settings that are about times wherever they stand, not about columns alone."""
+PITCH_UNTOLD = "recordings whose pitch is assumed to be 1 cm"
 FEWEST_COUNTED, BEGUN = 32, 0.1
 """Frames by whose numbers it is known that they count, and the share of these that one which begins
 anew may have left out."""
@@ -376,7 +377,7 @@ class Reading:
     def _pitch(self, own: tuple[float, float] | None) -> tuple[float, float]:
         pitch = self.told.pitch_cm or own
         if pitch is None:
-            self._once("recordings whose pitch is assumed to be 1 cm")
+            self._once(PITCH_UNTOLD)
             return 1.0, 1.0
         low, high = PITCHES_CM
         if not (low <= min(pitch) and max(pitch) <= high):

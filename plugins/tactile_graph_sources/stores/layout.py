@@ -39,6 +39,8 @@ COLUMNS: dict[str, tuple[str, float]] = {
     "number": ("int64", -1),
 }
 NOTES = "notes"
+PITCH_ASSUMED = "pitch_assumed"
+"""The attribute of a store whose ``pitch_cm`` nobody said."""
 Metadata = Mapping[str, Any]
 
 

@@ -32,6 +32,7 @@ from tactile_graph_sources.stores.layout import (
     JOURNALED,
     METADATA,
     NOTES,
+    PITCH_ASSUMED,
     Metadata,
     array_of,
     check_attributes,
@@ -113,6 +114,11 @@ class Stored:
     def n_frames(self) -> int:
         """How many frames it should hold."""
         return self.pieces[-1].high if self.pieces else 0
+
+    @property
+    def pitch_told(self) -> bool:
+        """Whether somebody said the pitch."""
+        return not self.attributes.get(PITCH_ASSUMED)
 
     @property
     def chunk(self) -> int:

@@ -26,7 +26,11 @@ class RecordingWriter(NamedTuple):
         What of a frame has no place in it: ``"truth"``, ``"device time"``, ``"gaps"``,
         ``"doubts"``, ``"labels"``, ``"own numbers"``; `OWN_SHAPES` where other truth has: of a
         frame with such a shape none is written.
+    write_untold : callable, optional
+        As ``write``, of frames whose pitch of 1 cm nobody said: who reads the file has to be told
+        that it is assumed. `write` if there is none.
     """
 
     write: Callable[[Path, Iterator[Frame], str], int]
     loses: tuple[str, ...] = ()
+    write_untold: Callable[[Path, Iterator[Frame], str], int] | None = None

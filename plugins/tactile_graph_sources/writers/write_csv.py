@@ -13,7 +13,9 @@ from tactile_graph.wires.frame import Frame
 from tactile_graph_sources.writers.recording_writer import RecordingWriter
 
 
-def write_csv(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
+def write_csv(
+    path: str | os.PathLike[str], frames: Iterable[Frame], pitch_told: bool = True
+) -> int:
     """Return the number of frames written to ``path``, which appears whole or not at all.
 
     The table keeps values and times (where the first frame has one), and says shape, pitch, origin
@@ -26,6 +28,8 @@ def write_csv(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
     path : path
     frames : iterable of Frame
         All of one shape.
+    pitch_told : bool
+        Whether anybody said the pitch; it is left out otherwise.
 
     Raises
     ------
@@ -40,19 +44,20 @@ def write_csv(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
         raise DataError(str(path), "there is no frame to write")
     n = 0
     with whole_file(path) as file:
-        file.write(_head(first).encode())
+        file.write(_head(first, pitch_told).encode())
         for frame in chain([first], it):
             file.write(_line(Path(path), frame, n, first).encode())
             n += 1
     return n
 
 
-def _head(first: Frame) -> str:
+def _head(first: Frame, pitch_told: bool) -> str:
     image = first.image
     cells = [f"r{r}c{c}" for r in range(image.rows) for c in range(image.columns)]
     names = ["frame", *(["time_s"] if first.time_s is not None else []), *cells]
+    pitch = f"pitch {image.pitch_cm} cm, " if pitch_told else ""
     about = (
-        f"# {image.rows} rows, {image.columns} columns, pitch {image.pitch_cm} cm, "
+        f"# {image.rows} rows, {image.columns} columns, {pitch}"
         f"origin {image.origin_cm} cm, {image.quantity}; cells row by row\n"
     )
     return about + ",".join(names) + "\n"
@@ -76,4 +81,5 @@ def _line(path: Path, frame: Frame, n: int, first: Frame) -> str:
 WRITER = RecordingWriter(
     lambda path, frames, about: write_csv(path, frames),
     loses=("truth", "device time", "gaps", "doubts", "labels", "own numbers"),
+    write_untold=lambda path, frames, about: write_csv(path, frames, pitch_told=False),
 )

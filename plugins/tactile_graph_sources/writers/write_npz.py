@@ -23,7 +23,9 @@ BLOCK = 64
 """Frames that are packed together."""
 
 
-def write_npz(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
+def write_npz(
+    path: str | os.PathLike[str], frames: Iterable[Frame], pitch_told: bool = True
+) -> int:
     """Return the number of frames written to ``path``, which appears whole or not at all.
 
     Parameters
@@ -32,6 +34,8 @@ def write_npz(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
         An existing file is replaced, at the end and at once.
     frames : iterable of Frame
         All of one shape, pitch, origin and quantity.
+    pitch_told : bool
+        Whether anybody said the pitch; it is left out otherwise.
 
     Raises
     ------
@@ -52,6 +56,8 @@ def write_npz(path: str | os.PathLike[str], frames: Iterable[Frame]) -> int:
     All frames are held until the last one has come, as their number stands before the first.
     """
     arrays = _arrays(list(frames))
+    if not pitch_told:
+        del arrays["pitch_cm"]
     with whole_file(path) as file:
         _write(file, arrays)
         file.flush()
@@ -129,4 +135,8 @@ def _arrays(frames: list[Frame]) -> dict[str, Any]:
     return arrays
 
 
-WRITER = RecordingWriter(lambda path, frames, about: write_npz(path, frames), (OWN_SHAPES,))
+WRITER = RecordingWriter(
+    lambda path, frames, about: write_npz(path, frames),
+    (OWN_SHAPES,),
+    lambda path, frames, about: write_npz(path, frames, pitch_told=False),
+)

@@ -6,6 +6,7 @@ import json
 import shutil
 import time
 from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -25,6 +26,7 @@ from tactile_graph_sources.stores.layout import (
     FORMAT,
     JOURNAL,
     NOTES,
+    PITCH_ASSUMED,
     VERSION,
     Metadata,
     array_of,
@@ -380,11 +382,12 @@ def _note(frame: Frame) -> bytes:
     return json.dumps(note).encode() if note else b""
 
 
-def _converted(path: Path, frames: Iterator[Frame], about: str) -> int:
+def _converted(path: Path, frames: Iterator[Frame], about: str, pitch_told: bool = True) -> int:
     """Write a store that gets its name at the end: half of it would pass for the whole."""
+    untold = {} if pitch_told else {PITCH_ASSUMED: True}
     with (
         whole_folder(path) as made,
-        StoreWriter(made, about={"converted_from": about}, called=path) as store,
+        StoreWriter(made, about={"converted_from": about, **untold}, called=path) as store,
     ):
         for frame in frames:
             store.write(frame)
@@ -394,4 +397,4 @@ def _converted(path: Path, frames: Iterator[Frame], about: str) -> int:
     return store.n_frames
 
 
-WRITER = RecordingWriter(_converted, (OWN_SHAPES,))
+WRITER = RecordingWriter(_converted, (OWN_SHAPES,), partial(_converted, pitch_told=False))

@@ -21,7 +21,9 @@ from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires import Circle, TrueObject
 from tactile_graph_sources.commands.convert import OFFERS, convert
+from tactile_graph_sources.inspection.look import look_into
 from tactile_graph_sources.readers.head import Head
+from tactile_graph_sources.readers.reading import PITCH_UNTOLD
 from tactile_graph_sources.recording import recording
 from tactile_graph_sources.writers.write_npz import write_npz
 from tactile_graph_sources.writers.write_store import StoreWriter
@@ -437,3 +439,19 @@ def test_truth_that_replaces_another_is_told(tmp_path: Path) -> None:
     said = run(tmp_path / "a.npz", tmp_path / "c.npz", "--truth", truth, "--frames", 2)
     assert f"{what} 1 frame\n" in said
     assert "replaces the truth" not in run(tmp_path / "b.npz", tmp_path / "d.npz")
+
+
+@pytest.mark.parametrize("ending", [".npz", ".zarr", ".csv"])
+def test_an_assumed_pitch_stays_one(tmp_path: Path, ending: str) -> None:
+    np.savez(tmp_path / "untold.npz", frames=np.arange(60.0).reshape(4, 3, 5))
+    run(tmp_path / "untold.npz", tmp_path / f"once{ending}")
+    run(tmp_path / f"once{ending}", tmp_path / f"twice{ending}")
+    report = Report()
+    read = list(recording(path=tmp_path / f"twice{ending}", report=report))
+    assert report.counts[PITCH_UNTOLD] == 1
+    assert [f.image.pitch_cm for f in read] == [(1.0, 1.0)] * 4
+    np.testing.assert_array_equal(read[3].image.values, np.arange(45.0, 60.0).reshape(3, 5))
+    told = tmp_path / f"told{ending}"
+    run(tmp_path / f"twice{ending}", told, "--pitch-cm", "1")
+    assert not look_into(told, {}).pitch_assumed
+    assert look_into(tmp_path / f"twice{ending}", {}).pitch_assumed

@@ -12,7 +12,7 @@ from tactile_graph.wires.frame_stack import MOST_FRAMES, FrameStack
 from tactile_graph_sources.readers.laid import Laid
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
-from tactile_graph_sources.store import read_store, read_store_in_stacks
+from tactile_graph_sources.store import frames_of
 from tactile_graph_sources.stores.layout import JOURNAL, METADATA, is_store
 from tactile_graph_sources.stores.stored import Lost, Stored, open_stored
 
@@ -23,12 +23,22 @@ def read(reading: Reading) -> Iterator[Any]:
     """Yield the frames of a store as far as it is whole; raises what `read_store` raises."""
     reading.pass_settings()
     reading.recognised(BY_FILES)
-    frames = read_store_in_stacks if reading.in_stacks else read_store
-    yield from as_told(reading, frames(reading.path, reading.report))
+    stored = open_stored(reading.path)
+    frames = frames_of(stored, reading.path, reading.report, in_stacks=reading.in_stacks)
+    yield from as_told(reading, frames, stored.pitch_told)
 
 
-def as_told(reading: Reading, frames: Iterable[Frame | FrameStack]) -> Iterator[Any]:
+def as_told(
+    reading: Reading, frames: Iterable[Frame | FrameStack], pitch_told: bool
+) -> Iterator[Any]:
     """Yield frames of a store as the settings tell of them; those of other sensors are left out.
+
+    Parameters
+    ----------
+    reading : Reading
+    frames : iterable of Frame or FrameStack
+    pitch_told : bool
+        Whether anybody said the pitch that they have.
 
     Raises
     ------
@@ -43,7 +53,7 @@ def as_told(reading: Reading, frames: Iterable[Frame | FrameStack]) -> Iterator[
             reading.place += max(first - due, 0)
         due = first + (len(stored) if isinstance(stored, FrameStack) else 1)
         if isinstance(stored, FrameStack):
-            yield from _stack_as_told(reading, stored)
+            yield from _stack_as_told(reading, stored, pitch_told)
             continue
         image = stored.image
         if not reading.wants(stored.label):
@@ -51,7 +61,7 @@ def as_told(reading: Reading, frames: Iterable[Frame | FrameStack]) -> Iterator[
         reading.told.agree(str(reading.path), image.rows, image.columns)
         frame = reading.frame(
             image.values,
-            pitch_cm=image.pitch_cm,
+            pitch_cm=image.pitch_cm if pitch_told else None,
             origin_cm=image.origin_cm,
             quantity=image.quantity,
             time_s=stored.time_s,
@@ -90,7 +100,9 @@ def _goes_with(some: Frame | FrameStack, held: Sequence[FrameStack]) -> bool:
     return sum(map(len, held)) + len(some) <= MOST_FRAMES
 
 
-def _stack_as_told(reading: Reading, stored: FrameStack) -> Iterator[Frame | FrameStack]:
+def _stack_as_told(
+    reading: Reading, stored: FrameStack, pitch_told: bool
+) -> Iterator[Frame | FrameStack]:
     images = stored.images
     _, rows, columns = images.shape
     if not reading.wants(""):
@@ -99,7 +111,7 @@ def _stack_as_told(reading: Reading, stored: FrameStack) -> Iterator[Frame | Fra
     yield from reading.frames(
         images.values,
         stored.time_s,
-        pitch_cm=images.pitch_cm,
+        pitch_cm=images.pitch_cm if pitch_told else None,
         origin_cm=images.origin_cm,
         quantity=images.quantity,
     )
@@ -113,7 +125,9 @@ def laid(reading: Reading) -> Laid | None:
     reading.recognised(BY_FILES)
 
     def frames(reading: Reading, low: int, high: int) -> Iterator[Frame | FrameStack]:
-        yield from as_told(reading, _pieces(stored, low, high, reading.in_stacks))
+        yield from as_told(
+            reading, _pieces(stored, low, high, reading.in_stacks), stored.pitch_told
+        )
 
     return Laid(stored.n_frames, frames, together=stored.chunk)
 

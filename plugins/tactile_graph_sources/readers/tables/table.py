@@ -45,7 +45,7 @@ _COMMENT = ("#", "%", "//")
 _FIELD = re.compile(r"[^\s,;|]+")
 _LONGEST_NUMBER = 24
 OWN = re.compile(
-    r"# (\d{1,7}) rows, (\d{1,7}) columns, pitch \((\S+), (\S+)\) cm, "
+    r"# (\d{1,7}) rows, (\d{1,7}) columns, (?:pitch \((\S+), (\S+)\) cm, )?"
     r"(?:origin \((\S+), (\S+)\) cm, )?(\w+); cells row by row"
 )
 """The comment that a table begins with which the project wrote."""

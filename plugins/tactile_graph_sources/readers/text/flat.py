@@ -90,13 +90,14 @@ def _own_word(head: Head, n_values: int) -> Told:
         return Told()
     rows, columns, quantity = int(found[1]), int(found[2]), found[7]
     try:
-        x, y, left, top = (float(w or 0) for w in found.group(3, 4, 5, 6))
+        x, y = (float(w or 1) for w in found.group(3, 4))
+        left, top = (float(w or 0) for w in found.group(5, 6))
     except ValueError:
         return Told()
     true = rows * columns == n_values and is_quantity(quantity) and min(x, y) > 0
     if not true or not np.isfinite([x, y, left, top]).all():
         return Told()  # somebody changed the table, so its comment may be wrong in all
-    return Told(rows, columns, (x, y), (left, top), quantity)
+    return Told(rows, columns, (x, y) if found[3] else None, (left, top), quantity)
 
 
 def _shape(reading: Reading, layout: Layout, own: Told) -> tuple[int, int]:
