@@ -16,6 +16,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph.inspect import NO_VALUE, Failed, NodeKind, Ref, Runner, Skipped
 from tactile_graph.many import Place, Portion, Sharing
 from tactile_graph.wires.frame import Frame
+from tactile_graph_compare.run.session import balanced_orders
 from tactile_graph_compare.variants.merge import Member, merge
 from tactile_graph_tune.choices.comparisons import alternatives, node_of
 from tactile_graph_tune.table.columns import FieldColumn, NodeColumn, Table, joined
@@ -106,7 +107,11 @@ class _Recorder:
         self._given = given
         asked = [tuple(p.nodes) for p in given.pipelines]
         self._merged = merge(given.pipelines, asked)
-        self._runner = self._merged.pipeline.runner(seed=given.seed)
+        # Who comes first finds the processor's caches cold, so that no pipeline may always do so.
+        orders = balanced_orders(len(given.pipelines), 2 * len(given.pipelines))
+        pipelines = [self._merged.in_order(order) for order in orders]
+        self._runners = [p.runner(seed=given.seed).each_alone() for p in pipelines]
+        self._order_rng = np.random.default_rng([given.seed, 8])
         self._warm = False
 
     def __call__(self, portion: Portion) -> list[Table]:
@@ -115,15 +120,18 @@ class _Recorder:
 
     def tables(self, frames: Sequence[Frame], told: Told) -> list[Table]:
         """Return the table of each pipeline."""
-        given, runner = self._given, self._runner
-        repeatable = runner.plan.repeatable  # what draws at random must not draw more often
+        given, runners = self._given, self._runners
+        repeatable = runners[0].plan.repeatable  # what draws at random must not draw more often
         for frame in [] if self._warm else frames[:WARM_FRAMES]:
-            runner(frame)
+            runners[0](frame)
+        for runner in [] if self._warm else runners[1:]:
+            runner(frames[0])
         self._warm = True
         members = zip(given.pipelines, self._merged.members, strict=True)
         rows = [_Rows(p, m, given.also, given.judged) for p, m in members]
         for k in range(given.n_rounds):
             for i, frame in enumerate(frames):
+                runner = runners[int(self._order_rng.integers(len(runners)))]
                 run = partial(_anew, runner, frame)
                 result = once_made(run) if repeatable else run()
                 for its in rows:
