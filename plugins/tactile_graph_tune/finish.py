@@ -57,8 +57,10 @@ def finished(tuning: Tuning, told: Told) -> Tuned:
         everything_us=tuning.everything_us(),
         worths=worths,
         settings=_settings(tuning, pipelines[CHOSEN]),
+        as_good=tuning.as_good,
         ratio=ratio_of(tuning, tuned_us, given_us),
         difference=weight_of(tuning, (tuned_us, tuned), (given_us, given)),
+        saved=_saved(tuning),
         pipeline=pipelines[CHOSEN],
         text=text,
     )
@@ -109,6 +111,11 @@ def weight_of(tuning: Tuning, found: Columns, less: Columns | None = None) -> We
 def predicted(tuning: Tuning, choice: Choice) -> Weight:
     """Return what the table says of a choice, on the frames that report."""
     return weight_of(tuning, _columns(tuning, choice))
+
+
+def _saved(tuning: Tuning) -> Interval:
+    whole, (own, _) = tuning.whole_us(), _columns(tuning, tuning.chosen)
+    return ratio_of(tuning, whole - own, np.ones(len(own)))
 
 
 def _worth(tuning: Tuning, place: str) -> GuardWorth:

@@ -28,6 +28,7 @@ from tactile_graph_tune.search.oracle import Bound, Options, options_of
 from tactile_graph_tune.search.questions import Questions, fields_by_place
 from tactile_graph_tune.search.search import Search, orders_of, pruned
 from tactile_graph_tune.search.select import Goal, Rows, merged, selected
+from tactile_graph_tune.search.settings import AsGood, best_of_each, settled, told_from
 from tactile_graph_tune.search.weigher import Aim, Space
 from tactile_graph_tune.shares import weights_of
 from tactile_graph_tune.split import Split, halves_of, split_of
@@ -79,6 +80,7 @@ class Tuning:
     always: Choice
     goal: Goal
     chosen: Choice
+    as_good: AsGood
 
     @property
     def how(self) -> str:
@@ -95,10 +97,15 @@ class Tuning:
         """Return what a choice comes to over some frames."""
         return _means(self.variants, choice, rows)
 
+    def whole_us(self) -> Reals:
+        """Return the time of each frame that reports, nothing skipped."""
+        nodes = self.variants[0].table.taken(self.split.reporting).nodes
+        found: Reals = np.sum([c.time_us for c in nodes.values()], axis=0)
+        return found
+
     def everything_us(self) -> float:
         """Return the mean time of the frames that report, nothing skipped."""
-        table = self.variants[0].table.taken(self.split.reporting)
-        return sum(table.mean(c.time_us) for c in table.nodes.values())
+        return self.variants[0].table.taken(self.split.reporting).mean(self.whole_us())
 
     def resamples(self) -> Resamples:
         """Return who tells how surely numbers are known."""
@@ -155,20 +162,59 @@ def searched(
     found = [p.choice for front in fronts for p in front.points]
     before = [goal.given] if request.levels else [goal.given, always]
     chosen = selected(goal, [*before, *found], folds, weigh)
-    limits = goal.limits(split.choosing, weigh)
-    if not request.levels:
-        chosen = pruned(spaces[chosen.variant], chosen, limits, goal.by_time)
-    front = merged(fronts, found, split.choosing, weigh, limits)
-    tuning = Tuning(request, judged, every, split, variants, spaces, front, always, goal, chosen)
-    if not request.levels:
-        return tuning
 
     def allowed(choice: Choice) -> bool:
         return all(weigh(choice, rows).within(goal.limits(rows, weigh)) for rows in folds)
 
+    as_good: AsGood = {}
+    if len(variants) > 1:
+        chosen, as_good = _settled(variants, chosen, [*before, *found], goal, allowed, split,
+                                   request.seed)  # fmt: skip
+    limits = goal.limits(split.choosing, weigh)
+    if not request.levels:
+        chosen = pruned(spaces[chosen.variant], chosen, limits, goal.by_time)
+    front = merged(fronts, found, split.choosing, weigh, limits)
+    tuning = Tuning(request, judged, every, split, variants, spaces, front, always, goal, chosen,
+                    as_good)  # fmt: skip
+    if not request.levels:
+        return tuning
     known = tuning.resamples().known
     chosen = unchanged_where_as_good(chosen, goal.given.chosen, known, allowed)
     return replace(tuning, chosen=chosen)
+
+
+def _settled(
+    variants: Sequence[Variant],
+    chosen: Choice,
+    others: Sequence[Choice],
+    goal: Goal,
+    allowed: Callable[[Choice], bool],
+    split: Split,
+    seed: int,
+) -> tuple[Choice, AsGood]:
+    """Return the choice with the values that are taken of the free settings."""
+    rows, truths = split.choosing, variants[0].table.truths
+    weights = truths.weights * truths.full if goal.by_time else truths.weights
+
+    def sought(choice: Choice) -> tuple[Reals, Reals]:
+        found = variants[choice.variant].predicted(choice)
+        return (found.loss if goal.by_time else found.time_us)[rows], weights[rows]
+
+    best = best_of_each(chosen, others, len(variants), allowed,
+                        lambda c: goal.sought(_means(variants, c, rows)))  # fmt: skip
+    least = min(best.values(), key=lambda c: goal.sought(_means(variants, c, rows)))
+    as_good = told_from(least, sought, split.groups[rows], seed)
+    return settled(best, [v.settings for v in variants], _given(variants), as_good)
+
+
+def _given(variants: Sequence[Variant]) -> dict[str, Any]:
+    """Return what the pipeline as it is has the free settings at."""
+    nodes, found = variants[0].pipeline.nodes, {}
+    for name in variants[-1].settings:
+        node, _, setting = name.rpartition(".")
+        its = nodes.get(node) or nodes.get(node.replace("/", "_"))
+        found[name] = None if its is None else its.settings.get(setting)
+    return found
 
 
 def _means(variants: Sequence[Variant], choice: Choice, rows: Rows) -> Means:

@@ -10,6 +10,7 @@ from tactile_graph_tune.choices.comparisons import Comparison
 from tactile_graph_tune.search.front import Choice
 from tactile_graph_tune.search.levels import Known
 from tactile_graph_tune.search.oracle import Bound
+from tactile_graph_tune.search.settings import AsGood
 from tactile_graph_tune.split import Interval
 from tactile_graph_tune.table.record import Judged
 
@@ -99,10 +100,14 @@ class Tuned:
     worths : tuple of GuardWorth
     settings : mapping
         What was chosen of the free settings.
+    as_good : mapping
+        For each of them the values that are as good, the others as chosen.
     ratio : Interval
         The tuned time over the given one.
     difference : Weight
         Tuned less given.
+    saved : Interval
+        What a frame in which nothing is skipped takes more than a tuned one, µs, predicted.
     pipeline : Pipeline
         The tuned one.
     text : str
@@ -120,8 +125,10 @@ class Tuned:
     everything_us: float
     worths: tuple[GuardWorth, ...]
     settings: dict[str, Any]
+    as_good: AsGood
     ratio: Interval
     difference: Weight
+    saved: Interval
     pipeline: Pipeline
     text: str
 

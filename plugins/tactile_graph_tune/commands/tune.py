@@ -245,6 +245,7 @@ def _show(found: Tuned) -> None:
         guards_table,
         heading,
         points_table,
+        settings_told,
         verdict,
     )
 
@@ -257,8 +258,8 @@ def _show(found: Tuned) -> None:
     if gone:
         text = f"not shown, for want of width: {', '.join(gone)}; --json gives all"
         out.print(Text(text, style="dim"), soft_wrap=True)
-    for name, value in found.settings.items():
-        out.print(Text(f"{name} = {value}"))
+    for told in settings_told(found):
+        out.print(Text(told), soft_wrap=True)
     out.print(Text(verdict(found), style="bold"), soft_wrap=True)
     if doubt(found):
         out.print(Text(doubt(found), style="yellow"), soft_wrap=True)

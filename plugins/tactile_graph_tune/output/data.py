@@ -22,6 +22,7 @@ def as_json(tuned: Tuned) -> str:
         "everything_us": tuned.everything_us,
         "guards": [as_data(w) for w in tuned.worths],
         "settings": as_data(tuned.settings),
+        "as_good": as_data(tuned.as_good),
         "time_ratio": as_data(tuned.ratio),
         "difference": as_data(tuned.difference),
         "share_of_saving": tuned.share_of_saving(CHOSEN),

@@ -25,7 +25,9 @@ def heading(tuned: Tuned) -> str:
 def verdict(tuned: Tuned) -> str:
     """Return what came of it, in a sentence."""
     ratio, share = tuned.ratio, tuned.share_of_saving()
-    if share == share:
+    if tuned.saved.low <= 0.0:
+        told = "what it saves against skipping nothing is not clear of chance"
+    elif share == share:
         told = f"it saves {100 * share:.0f} % of what an oracle saves at its error"
     elif math.isnan(tuned.oracle_us()):
         told = "no oracle errs as little, to tell what could be saved"
@@ -35,6 +37,14 @@ def verdict(tuned: Tuned) -> str:
         f"tuned takes {ratio.mean:.2f} of the time as given ({ratio.low:.2f} to {ratio.high:.2f}), "
         f"{tuned.difference.told(tuned.judged.unit)}; {told}"
     )
+
+
+def settings_told(tuned: Tuned) -> Iterator[str]:
+    """Yield what was chosen of each free setting, and what would have been as good."""
+    for name in dict.fromkeys([*tuned.settings, *tuned.as_good]):
+        told = f"{name} = {tuned.settings[name]}" if name in tuned.settings else f"{name} as it was"
+        alike = tuned.as_good.get(name, ())
+        yield f"{told}; as good: {', '.join(map(str, alike))}" if len(alike) > 1 else told
 
 
 def doubt(tuned: Tuned) -> str:
@@ -145,7 +155,7 @@ def _error(tuned: Tuned) -> str:
 
 
 def _share(share: float, sign: str = "") -> str:
-    return f"{100 * share:{sign}.0f} %" if share == share else ""
+    return f"{round(100 * share):{sign}d} %" if share == share else ""
 
 
 def _bounds(interval: Interval) -> str:

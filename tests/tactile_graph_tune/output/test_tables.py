@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tactile_graph_tune.output.tables import doubt, points_table, verdict
+from tactile_graph_tune.output.tables import doubt, points_table, settings_told, verdict
 from tactile_graph_tune.search.front import Choice
 from tactile_graph_tune.split import Interval
 from tactile_graph_tune.table.record import Judged
@@ -27,13 +27,14 @@ def test_times_that_were_disturbed_are_doubted(predicted_us: float, told: str) -
     assert bool(doubt(tuned)) == bool(told)
 
 
-def tuned(everything_us: float, oracle_us: float) -> Tuned:
+def tuned(everything_us: float, oracle_us: float, surely_us: float = 1.0) -> Tuned:
     """Return an outcome in which a choice takes 17.5 us, and everything and an oracle so much."""
     point = Point("", Choice(0, (), {}), weight(17.5), weight(17.5))
     given: dict[str, Any] = dict.fromkeys(its.name for its in fields(Tuned))
     bound = SimpleNamespace(time_at=lambda error, missed: oracle_us)
     given |= {"points": dict.fromkeys((GIVEN, ALWAYS, CHOSEN), point), "bound": bound}
     given |= {"everything_us": everything_us, "ratio": Interval(1.0, 1.0, 1.0)}
+    given |= {"saved": Interval(2.5, surely_us, 4.0)}
     return Tuned(**given | {"judged": Judged("circle", "centre", "cm", 2.0),
                             "difference": weight(0.0)})  # fmt: skip
 
@@ -54,3 +55,15 @@ def test_of_a_saving_that_is_rounding_alone_there_is_no_share(
     found = tuned(everything_us, oracle_us)
     assert [row[-1] for row in points_table(found).rows] == shares
     assert told in verdict(found)
+
+
+def test_of_a_saving_that_may_be_chance_no_share_is_said() -> None:
+    said = verdict(tuned(20.0, 15.0, surely_us=-0.1))
+    assert "saves against skipping nothing is not clear of chance" in said
+    assert "of what an oracle saves" not in said
+
+
+def test_values_that_are_as_good_are_told() -> None:
+    given: dict[str, Any] = dict.fromkeys(its.name for its in fields(Tuned))
+    given |= {"settings": {"a.x": 2}, "as_good": {"a.x": (1, 2, 3), "b.y": (5,)}}
+    assert [*settings_told(Tuned(**given))] == ["a.x = 2; as good: 1, 2, 3", "b.y as it was"]
