@@ -47,7 +47,10 @@ def errors(comparison: Comparison) -> Table:
             score = comparison.score(label, quantity)
             if score is not None:
                 rows.append(_error_row(score))
-    note = "* on the Pareto front of mean error and median time: no variant beats it in both"
+    note = (
+        "* on the Pareto front of mean error and median time: no variant that answers as often "
+        "beats it in both"
+    )
     can_go = ("extra", "bias", "95 %", "median")
     return Table("Absolute errors", columns, tuple(rows), note if rows else "", can_go)
 

@@ -61,7 +61,11 @@ def _row(
                 cells.append(tag("th", value, scope="rowgroup", rowspan=span, class_="words"))
         elif column in ("variant", "against"):
             label = value.removesuffix(" *")
-            star = tag("abbr", "★", title="on the Pareto front") if label != value else None
+            star = (
+                tag("abbr", "★", title="on the Pareto front: none that answers as often beats it")
+                if label != value
+                else None
+            )
             inner = [chip(numbers[label]) if label in numbers else None, " ", label, " ", star]
             kind = "th" if column == "variant" else "td"
             scope = "row" if column == "variant" else None

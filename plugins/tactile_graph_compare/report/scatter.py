@@ -65,8 +65,14 @@ def _log(scale: Scale) -> str:
 def _corners(
     scores: list[Score], spots: list[Spot], x: Scale, y: Scale
 ) -> list[tuple[float, float]]:
-    """Return the edge of what is beaten in pixels: a step down at each variant on the front."""
-    front = sorted(at for s, at in zip(scores, spots, strict=True) if s.pareto)
+    """Return the edge of what is beaten in pixels: a step down at each variant on the front.
+
+    Only of those that answer most often: who answers less often beats none that answers more.
+    """
+    most = max(s.n_answered for s in scores)
+    front = sorted(
+        at for s, at in zip(scores, spots, strict=True) if s.pareto and s.n_answered == most
+    )
     lower = [at for i, at in enumerate(front) if all(at[1] < b[1] for b in front[:i])]
     found: list[tuple[float, float]] = []
     for time, error in lower:

@@ -33,7 +33,8 @@ def _pareto(comparison: Comparison, album: Album) -> Html | None:
     return figure(
         shown,
         "Filled: on the Pareto front, beaten in both error and time by none that answers as "
-        "often; hollow: beaten. Down and left is better; shaded is what the best have beaten.",
+        "often; hollow: beaten. Down and left is better; shaded is what those that answer most "
+        "often have beaten.",
     )
 
 

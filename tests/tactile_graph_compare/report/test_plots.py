@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -134,6 +135,9 @@ def test_the_front_is_a_staircase_through_those_on_it() -> None:
     steps = [(10.0, scatter.TOP), (10.0, 20.0), (30.0, 20.0), (30.0, 40.0), (scatter.RIGHT, 40.0)]
     assert scatter._corners(scores, spots, x, y) == steps
     assert scatter._corners(scores[1:2], spots[1:2], x, y) == []
+    often = replace(scores[1], n_answered=2, pareto=True)  # which none of the others beats
+    edge = [(40.0, scatter.TOP), (40.0, 25.0), (scatter.RIGHT, 25.0)]
+    assert scatter._corners([scores[0], often, scores[2]], spots, x, y) == edge
     told = "L".join(f"{px:.1f} {py:.1f}" for px, py in steps)
     assert f'd="M{told}"' in scatter._front(steps)[1]
 
