@@ -24,7 +24,7 @@ SCORES = ("variant", "quantity", "unit", "mean", "median", "p95", "largest", "bi
           "n_missing", "n_extra", "pareto")  # fmt: skip
 DIFFERENCES = ("variant", "reference", "quantity", "unit", "mean", "low", "high", "level",
                "method", "n_both", "n_only_variant", "n_only_reference", "n_neither",
-               "verdict")  # fmt: skip
+               "verdict", "p")  # fmt: skip
 
 AGREEMENTS = ("variant", "reference", "quantity", "unit", "mean", "median", "p95", "largest",
               "bias", "n_both", "n_only_variant", "n_only_reference", "n_neither")  # fmt: skip

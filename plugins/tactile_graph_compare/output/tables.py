@@ -79,6 +79,12 @@ def differences(comparison: Comparison) -> Table:
     )
     methods = ", ".join(sorted({d.method for d in comparison.differences if d.method}))
     note = f"error less the other's where both answered; negative is better; {methods}"
+    n = sum(d.p is not None for d in comparison.differences)
+    if n > 1:
+        note += (
+            f"; better, worse: at 95 % for all {n} comparisons together; perhaps: for this one "
+            f"alone, as of {n} about {n / 20:.2g} are by luck"
+        )
     can_go = ("neither", "only other", "only it", "both", "against", "95 % from", "to")
     return Table("Paired differences", columns, rows, note if rows else "", can_go)
 

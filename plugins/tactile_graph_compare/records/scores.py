@@ -98,20 +98,26 @@ class Difference:
     n_only_variant: int
     n_only_reference: int
     n_neither: int
+    p: float | None = None
+    """How often a mean as far from 0 would come by chance, were there no difference."""
+    for_all: bool = True
+    """Whether 0 is left out at ``level`` for all comparisons made beside it together."""
 
     @property
     def verdict(self) -> str:
         """``better``, ``worse`` or ``no clear difference``: whether the interval leaves out 0.
 
-        ``none in common`` where no target was answered by both.
+        ``perhaps better`` and ``perhaps worse`` where that may well be the chance of one among
+        many comparisons, ``none in common`` where no target was answered by both.
         """
         if not self.n_both:
             return "none in common"
+        perhaps = "" if self.for_all else "perhaps "
         if self.low is not None and self.high is not None:
             if self.high < 0.0:
-                return "better"
+                return f"{perhaps}better"
             if self.low > 0.0:
-                return "worse"
+                return f"{perhaps}worse"
         return "no clear difference"
 
 

@@ -68,7 +68,7 @@ def _verdict(comparison: Comparison, best: Score, n_scores: int) -> str:
         for d in comparison.differences
         if d.quantity == best.quantity and d.reference == best.variant
     ]
-    close = [d.variant for d in against if d.verdict in ("better", "no clear difference")]
+    close = [d.variant for d in against if d.verdict not in ("worse", "none in common")]
     if close:
         return f"no clear difference from {_some(close)}"
     return ""
@@ -85,7 +85,8 @@ def _told(found: Difference, other: str) -> str:
         return f"no answer in common with {other}"
     if found.verdict == "no clear difference":
         return f"no clear difference from {other}"
-    return f"clearly {found.verdict} than {other}"
+    clearly = "clearly " if found.for_all else ""
+    return f"{clearly}{found.verdict} than {other}"
 
 
 def _front(comparison: Comparison, quantity: str) -> Html | None:

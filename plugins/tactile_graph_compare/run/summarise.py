@@ -19,6 +19,7 @@ from tactile_graph_compare.run.merged_graph import merged_graph
 from tactile_graph_compare.run.session import Session
 from tactile_graph_compare.score.statistics import (
     difference_of,
+    for_all_together,
     score_of,
     time_difference_of,
     times_of,
@@ -62,12 +63,12 @@ def summarise(
     )  # fmt: skip
     rng = np.random.default_rng(session.seed)
     references = _references(variants, session.reference)
-    differences = tuple(_differences(references, scores, rng))
+    differences = for_all_together(_differences(references, scores, rng))
     times = tuple(_time_differences(references, variants))
     chosen = chosen_frames(session)
     of_parents = differences
     if session.reference:
-        of_parents = tuple(_differences(_references(variants, ""), scores, rng))
+        of_parents = for_all_together(_differences(_references(variants, ""), scores, rng))
     return ShownComparison(
         variants=variants,
         frames=session.merged_log.frames(),

@@ -90,6 +90,7 @@ class Interval(NamedTuple):
     low: float | None
     high: float | None
     method: str
+    p: float | None = None
 
 
 def mean_interval(
@@ -120,16 +121,44 @@ def mean_interval(
         return Interval(mean, None, None, f"no bounds below {LEAST_FRAMES} frames")
     if np.count_nonzero(np.abs(values) > DIFFERS) < LEAST_FRAMES:
         return Interval(mean, None, None, f"no bounds below {LEAST_FRAMES} frames that differ")
+    error = float((values - mean * counts).std(ddof=1)) * np.sqrt(n) / int(counts.sum())
+    p = _two_sided(mean, error, n)
     if n > MOST_RESAMPLED:
-        half = Z * float((values - mean * counts).std(ddof=1)) * np.sqrt(n) / int(counts.sum())
-        return Interval(mean, mean - half, mean + half, "normal over frames")
+        half = Z * error
+        return Interval(mean, mean - half, mean + half, "normal over frames", p)
     means = np.empty(RESAMPLES)
     for start in range(0, RESAMPLES, 250):  # in parts: all at once would take n times 16 kB
         drawn = rng.integers(0, n, (250, n))
         means[start : start + 250] = values[drawn].sum(axis=1) / counts[drawn].sum(axis=1)
     tail = tail_of(n)
     low, high = np.percentile(means, (tail, 100.0 - tail))
-    return Interval(mean, float(low), float(high), "bootstrap over frames")
+    return Interval(mean, float(low), float(high), "bootstrap over frames", p)
+
+
+def _two_sided(mean: float, error: float, n: int) -> float:
+    """Return how often Student's distribution is as far from 0 as a mean of so many values."""
+    from scipy.special import stdtr
+
+    if not error > 0.0:
+        return float(mean == 0.0)
+    return float(2.0 * stdtr(n - 1, -abs(mean) / error))
+
+
+def for_all_together(differences: Sequence[Difference]) -> tuple[Difference, ...]:
+    """Return differences, each with whether it leaves out 0 for all of them together.
+
+    Notes
+    -----
+    Holm's procedure (1979, www.jstor.org/stable/4615733): where no variant differs, the chance that
+    any of the verdicts says so stays below what `LEVEL` leaves, however many there are.
+    """
+    known = sorted((d.p, k) for k, d in enumerate(differences) if d.p is not None)
+    hold: set[int] = set()
+    for done, (p, k) in enumerate(known):
+        if p * (len(known) - done) > 1.0 - LEVEL:
+            break
+        hold.add(k)
+    return tuple(replace(d, for_all=k in hold) for k, d in enumerate(differences))
 
 
 def tail_of(n: int) -> float:
@@ -182,6 +211,7 @@ def difference_of(one: Score, reference: Score, rng: np.random.Generator) -> Dif
         len(mine.keys() - theirs.keys()),
         len(theirs.keys() - mine.keys()),
         len(_missing(one) & _missing(reference)),
+        found.p if found else None,
     )
 
 

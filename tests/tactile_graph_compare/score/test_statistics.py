@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from tactile_graph_compare.score.scoring import QuantityErrors
 from tactile_graph_compare.score.statistics import (
     LEAST_FRAMES,
     difference_of,
+    for_all_together,
     mean_interval,
     score_of,
     tail_of,
@@ -164,3 +166,31 @@ def test_who_answers_less_beats_nobody():
     seldom = score_of("seldom", "radius", "cm", targets([1.0, NAN]))
     front = with_pareto([often, seldom], {"often": 5.0, "seldom": 1.0})
     assert [s.pareto for s in front] == [True, True]
+
+
+def test_verdicts_hold_for_all_comparisons_together():
+    """Twenty variants that differ by nothing but noise, and one that is better."""
+    said = []
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        first, *others = (score_of(str(k), "radius", "cm", targets(rng.normal(9.0, 1.0, 60)))
+                          for k in range(21))  # fmt: skip
+        others.append(score_of("good", "radius", "cm", targets(rng.normal(7.0, 1.0, 60))))
+        alone = [difference_of(o, first, rng) for o in others]
+        *equal, good = for_all_together(alone)
+        said += [d.verdict for d in equal]
+        assert good.verdict == "better"
+        assert [(d.low, d.high, d.p) for d in alone[:-1]] == [(d.low, d.high, d.p) for d in equal]
+    assert not {"better", "worse"} & set(said)
+    assert {"perhaps better", "perhaps worse"} & set(said)
+
+
+def test_by_how_many_comparisons_a_chance_is_multiplied():
+    one = difference_of(*(score_of(v, "radius", "cm", targets(e)) for v, e in
+                          (("b", np.arange(1.0, 9.0)), ("a", np.ones(8)))),
+                        np.random.default_rng(0))  # fmt: skip
+    assert one.p == pytest.approx(0.0049, abs=1e-4)  # t = 3.5 / sqrt(6 / 8), 7 degrees of freedom
+    none = replace(one, p=None)
+    for n, told in ((1, True), (10, True), (11, False)):
+        made = for_all_together([one, none, *[replace(one, p=0.5)] * (n - 1)])
+        assert made[0].for_all is told
