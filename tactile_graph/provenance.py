@@ -6,7 +6,8 @@ import hashlib
 import json
 import os
 import platform
-from collections.abc import Iterator, Mapping
+import sys
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from typing import Any
 from tactile_graph.files import write_whole
 from tactile_graph.foreign_text import visible
 from tactile_graph.pipeline.graph import Graph
+from tactile_graph.pipeline.named_files.named_files import content_of
 from tactile_graph.pipeline.plain import plain
 from tactile_graph.plugins.names import Plugin
 from tactile_graph.plugins.registry import Registry, installed
@@ -55,10 +57,44 @@ def provenance(pipeline: Graph, seed: int, report: Report, **more: Any) -> dict[
             "tactile-graph": version("tactile-graph"),
             "python": platform.python_version(),
             "numpy": version("numpy"),
+            "scipy": version("scipy"),
+            "numba": version("numba"),
             "platform": platform.platform(),
         },
         "plugins": {n: {"package": p.package, "version": p.version} for n, p in used.items()},
     }  # fmt: skip
+
+
+def code_digest(graphs: Sequence[Graph]) -> str:
+    """Return a digest of the project's own code, and of that of the packages steps are of."""
+    names = {"tactile_graph", *(name for graph in graphs for name in _packages(graph))}
+    code = sorted(path for name in names for path in _places(name))
+    return digest_of([content_of(path, "*.py") for path in code])
+
+
+def _places(package: str) -> Iterator[Path]:
+    """Yield where a package's code lies; nothing for one that was typed, or lies in an archive."""
+    module = sys.modules.get(package)
+    file, folders = (getattr(module, name, None) for name in ("__file__", "__path__"))
+    if file:
+        place = Path(folders[0] if folders else file)
+        yield from [place] if place.exists() else []
+
+
+def _packages(graph: Graph) -> Iterator[str]:
+    signatures = [n.signature for n in graph.nodes.values()]
+    signatures += [graph.source.signature] if graph.source is not None else []
+    for signature in signatures:
+        if signature is not None:
+            yield getattr(signature.target, "__module__", "").partition(".")[0]
+    for node in graph.nodes.values():
+        if node.inner is not None:
+            yield from _packages(node.inner)
+
+
+def digest_of(data: Any) -> str:
+    """Return a digest of plain data."""
+    return _sha256(json.dumps(data, sort_keys=True, default=str))
 
 
 def _sha256(text: str) -> str:

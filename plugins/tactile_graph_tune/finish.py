@@ -209,6 +209,7 @@ def _head(tuning: Tuning) -> str:
         f"numbers of {len(tuning.split.reporting)} others ({tuning.how}); error: of the "
         f"{judged.quantity} where something lies, a missed one counting {judged.price:g} "
         f"{judged.unit}".rstrip()
+        + (f"; frames of {tuning.request.frames_of}" if tuning.request.frames_of else "")
     )
 
 

@@ -72,6 +72,8 @@ class Request:
         What share of the frames to come is of which kind; every frame counts alike if not given.
     place : Place, optional
         Where workers run everything on every frame; this process does where there is none.
+    frames_of : str
+        Where the frames come from, in words for the tuned file.
     """
 
     pipeline: Pipeline
@@ -91,6 +93,7 @@ class Request:
     seed: int = 0
     shares: tuple[Share, ...] = ()
     place: Place | None = None
+    frames_of: str = ""
 
     def variants(self) -> list[dict[str, Any]]:
         """Return every combination of the free settings' values, the file's own first.

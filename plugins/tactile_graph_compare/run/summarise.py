@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tactile_graph.inspect import Source
 from tactile_graph.steps.injected import Report
 from tactile_graph_compare.output.notebook import ShownComparison
 from tactile_graph_compare.records.comparison import Comparison, Evolution, Variant
@@ -72,7 +73,7 @@ def summarise(
     return ShownComparison(
         variants=variants,
         frames=session.merged_log.frames(),
-        source=_source(session),
+        source=source_told(session.merged.pipeline.source),
         graph=merged_graph(session),
         saving=_saving(session, variants),
         fixed_us=times_of(session.merged_log.fixed_us).median_us,
@@ -116,8 +117,8 @@ def _variant(number: int, log: VariantLog) -> Variant:
     )
 
 
-def _source(session: Session) -> str:
-    source = session.merged.pipeline.source
+def source_told(source: Source | None) -> str:
+    """Return where frames come from, in words."""
     if source is None:
         return "frames handed in"
     name, given = source.name, source.given
@@ -223,7 +224,7 @@ def _evolutions(
 
 def _provenance(session: Session, report: Report, interrupted: bool, start: int) -> dict[str, Any]:
     """Return how to make it again: as of a run, with the pipeline of every variant."""
-    from tactile_graph.provenance import provenance
+    from tactile_graph.provenance import code_digest, provenance
 
     rows = [
         provenance(p.pipeline, session.seed, report, given=p.given, asked=p.asked)
@@ -239,6 +240,7 @@ def _provenance(session: Session, report: Report, interrupted: bool, start: int)
         "source": first["source"],
         "versions": first["versions"],
         "plugins": plugins,
+        "code": code_digest([p.pipeline for p in session.prepared]),
         "variants": {
             p.label: {k: row[k] for k in ("given", "asked", "pipeline", "file")}
             for p, row in zip(session.prepared, rows, strict=True)

@@ -28,6 +28,7 @@ from tactile_graph.foreign_text import visible
 
 if TYPE_CHECKING:
     from tactile_graph import Pipeline
+    from tactile_graph.steps.injected import Report
     from tactile_graph.wires.frame import Frame
     from tactile_graph_tune.tuned import Tuned
 
@@ -123,7 +124,9 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
     from tactile_graph.cli.interrupt import Interrupts
     from tactile_graph.cli.output.progress import Bar
     from tactile_graph.cli.terminal import console
+    from tactile_graph.steps.injected import Report
     from tactile_graph_tune.apart import check_recordings
+    from tactile_graph_tune.commands.making import frames_of, how_made
     from tactile_graph_tune.request import Request, parse_free
     from tactile_graph_tune.shares import parse_share
     from tactile_graph_tune.tuner import tune as tuned_of
@@ -142,12 +145,14 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
         opened, asked.answer, asked.quantity, asked.price, asked.most_error, asked.most_missed,
         asked.most_false, asked.most_us, asked.margin, asked.fields, asked.kept, free, asked.levels,
         asked.rounds, asked.seed, shares, place_asked(asked.workers, asked.on),
+        frames_of(opened, recordings, asked.held_out, asked.seed),
     )  # fmt: skip
+    report, of_apart = Report(), Report()
     bar = Bar(console(stderr=True), "tune")
     try:
         with Interrupts():
-            frames = _frames(opened, span, asked)
-            apart = [f for name in asked.held_out for f in _recorded(opened, name, asked)]
+            frames = _frames(opened, span, asked, report)
+            apart = [f for name in asked.held_out for f in _recorded(opened, name, asked, of_apart)]
             found = tuned_of(request, frames, apart, lambda what, n, of: bar.at(n, of))
     except KeyboardInterrupt:
         say("nothing was chosen, and nothing written", err=True)
@@ -158,7 +163,10 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
     if request.place is not None:
         told = f"of the table {side_by_side(request.place)}"
         console().print(told, style="dim", soft_wrap=True)
-    for name in _written(found, asked):
+    provenance = how_made(
+        opened, span, asked.seed, report, held_out=dict(of_apart.digests), truth=asked.truth
+    )
+    for name in _written(found, asked, provenance):
         console().print(f"wrote {name}", style="dim", soft_wrap=True)
 
 
@@ -211,11 +219,8 @@ def _check_files(asked: _Options) -> None:
         check_target("--json", asked.json_path, (".json",))
 
 
-def _frames(opened: Pipeline, span: Span, asked: _Options) -> Sequence[Frame]:
+def _frames(opened: Pipeline, span: Span, asked: _Options, report: Report) -> Sequence[Frame]:
     """Return the frames to choose by, with the truth that a file holds."""
-    from tactile_graph.steps.injected import Report
-
-    report = Report()
     frames: Iterator[Frame] = opened.frames(asked.seed, report)
     if asked.truth is None:
         return list(span.of(frames))
@@ -225,13 +230,13 @@ def _frames(opened: Pipeline, span: Span, asked: _Options) -> Sequence[Frame]:
         return list(span.of(known))
 
 
-def _recorded(opened: Pipeline, name: str, asked: _Options) -> Iterator[Frame]:
+def _recorded(opened: Pipeline, name: str, asked: _Options, report: Report) -> Iterator[Frame]:
     """Yield the frames of a recording that is held out."""
     from tactile_graph.cli.arguments import source_named
 
     named = source_named(opened, [name], None, (), Span())
     assert named is not None
-    return reads_for_told_pads(opened.with_settings({}, named)).frames(asked.seed)
+    return reads_for_told_pads(opened.with_settings({}, named)).frames(asked.seed, report)
 
 
 def _show(found: Tuned) -> None:
@@ -265,7 +270,7 @@ def _show(found: Tuned) -> None:
         out.print(Text(doubt(found), style="yellow"), soft_wrap=True)
 
 
-def _written(found: Tuned, asked: _Options) -> Iterator[str]:
+def _written(found: Tuned, asked: _Options, provenance: dict[str, Any]) -> Iterator[str]:
     """Write the files asked for, and yield their names."""
     from tactile_graph.files import write_whole
     from tactile_graph.inspect import moved
@@ -282,5 +287,5 @@ def _written(found: Tuned, asked: _Options) -> Iterator[str]:
     if asked.json_path is not None:
         from tactile_graph_tune.output.data import as_json
 
-        write_whole(asked.json_path, visible(as_json(found)))
+        write_whole(asked.json_path, visible(as_json(found, provenance)))
         yield asked.json_path

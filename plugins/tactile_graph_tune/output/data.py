@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from tactile_graph.inspect import as_data, without_nan
@@ -10,8 +11,15 @@ from tactile_graph_tune.search.front import Choice
 from tactile_graph_tune.tuned import CHOSEN, Point, Tuned
 
 
-def as_json(tuned: Tuned) -> str:
-    """Return all figures as a JSON text."""
+def as_json(tuned: Tuned, provenance: Mapping[str, Any]) -> str:
+    """Return all figures as a JSON text.
+
+    Parameters
+    ----------
+    tuned : Tuned
+    provenance : mapping
+        How to make it again.
+    """
     data = {
         "judged": as_data(tuned.judged),
         "frames": {"choosing": tuned.n_choosing, "reporting": tuned.n_reporting, "how": tuned.how},
@@ -26,6 +34,7 @@ def as_json(tuned: Tuned) -> str:
         "time_ratio": as_data(tuned.ratio),
         "difference": as_data(tuned.difference),
         "share_of_saving": tuned.share_of_saving(CHOSEN),
+        "provenance": provenance,
     }
     return json.dumps(without_nan(data), indent=1, ensure_ascii=False) + "\n"
 

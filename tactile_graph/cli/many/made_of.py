@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 from tactile_graph.api.pipeline import Pipeline
-from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.named_files.named_files import (
     content_of,
     is_kept,
@@ -20,7 +15,7 @@ from tactile_graph.pipeline.named_files.named_files import (
     paths_in,
 )
 from tactile_graph.plugins.registry import installed
-from tactile_graph.provenance import used_plugins
+from tactile_graph.provenance import code_digest, digest_of, used_plugins
 
 WORDS = {
     "pipeline": "the pipeline or its settings",
@@ -40,10 +35,10 @@ def made_of(pipeline: Pipeline, options: Mapping[str, Any]) -> dict[str, str]:
     registry = pipeline.registry or installed()
     plugins = sorted({(p.name, p.version) for p in used_plugins(pipeline, registry)})
     return {
-        "pipeline": _digest(pipeline.resolved()),
-        "options": _digest(options),
-        "versions": _digest([version("tactile-graph"), version("numpy"), plugins]),
-        "code": _digest([content_of(p, "*.py") for p in _code(pipeline)]),
+        "pipeline": digest_of(pipeline.resolved()),
+        "options": digest_of(options),
+        "versions": digest_of([version("tactile-graph"), version("numpy"), plugins]),
+        "code": code_digest([pipeline]),
         **found,
     }
 
@@ -59,26 +54,3 @@ def device(pipeline: Pipeline) -> str:
     named = paths_in(pipeline.source.settings) if pipeline.source is not None else iter(())
     once = (path for path in named if is_there(path) and not is_kept(path))
     return str(next(once, ""))
-
-
-def _code(graph: Graph) -> list[Path]:
-    """Return where the project's own code lies, and that of the packages that steps are of."""
-    names = {"tactile_graph", *_packages(graph)}
-    places = ((getattr(m, "__path__", None), m.__file__) for m in map(sys.modules.get, names) if m)
-    return sorted(Path(folders[0] if folders else file) for folders, file in places if file)
-
-
-def _packages(graph: Graph) -> Iterator[str]:
-    signatures = [n.signature for n in graph.nodes.values()]
-    signatures += [graph.source.signature] if graph.source is not None else []
-    for signature in signatures:
-        if signature is not None:
-            yield getattr(signature.target, "__module__", "").partition(".")[0]
-    for node in graph.nodes.values():
-        if node.inner is not None:
-            yield from _packages(node.inner)
-
-
-def _digest(data: Any) -> str:
-    text = json.dumps(data, sort_keys=True, default=str)
-    return hashlib.sha256(text.encode()).hexdigest()

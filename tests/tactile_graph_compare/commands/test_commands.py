@@ -93,6 +93,8 @@ def test_json_holds_all_figures_and_how_they_were_made(hand_made):
     assert [v["label"] for v in data["variants"]] == ["discs", "next"]
     assert data["lineage"][0]["added"] == ["merged", "first", "spare"]
     assert data["provenance"]["seed"] == 3
+    assert len(data["provenance"]["code"]) == 64
+    assert {"scipy", "numba"} <= set(data["provenance"]["versions"])
     assert data["provenance"]["variants"]["next"]["pipeline"]["nodes"]["first"]["with"]
     assert "Absolute errors" in got.stderr
 

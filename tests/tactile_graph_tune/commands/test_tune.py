@@ -37,6 +37,11 @@ def test_a_ladder_comes_out_with_its_numbers_its_file_its_plot_and_all_figures(h
     data = json.loads(Path("out.json").read_text())
     assert data["weighed"] > 100
     assert data["points"]["tuned"]["run"]["error"]["mean"] <= 2.0
+    made = data["provenance"]
+    assert (made["seed"], made["source"]["step"], made["held_out"]) == (0, "made", {})
+    assert {"code", "command", "frames", "versions", "plugins", "truth", "file"} <= set(made)
+    head = " ".join(Path("out.yaml").read_text().replace("# ", "").split())
+    assert "frames of made (frames: 24, empty: [3, 7]), seed 0" in head
 
 
 @pytest.mark.slow

@@ -260,7 +260,14 @@ def test_an_output_file_has_its_provenance_beside_it(tmp_path):
     assert meta["pipeline"]["nodes"]["circle"]["with"] == {"fail_at_x": -1.0, "crash": False}
     assert meta["plugins"] == {"hand": {"package": "hand-made", "version": "1.2"}}
     assert meta["result"]["frames"] == 2
-    assert set(meta["versions"]) == {"tactile-graph", "python", "numpy", "platform"}
+    assert set(meta["versions"]) == {
+        "tactile-graph",
+        "python",
+        "numpy",
+        "scipy",
+        "numba",
+        "platform",
+    }
 
 
 # -- which frames, which nodes, which settings ---------------------------------------------------
