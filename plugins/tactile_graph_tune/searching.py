@@ -230,12 +230,17 @@ def _known(frames: Sequence[Frame], held_out: Sequence[Frame]) -> tuple[list[Fra
     """Return the frames whose truth is known, and those of them that are held out."""
     known = [f for f in frames if f.truth is not None]
     apart = [f for f in held_out if f.truth is not None]
-    for given, left in ((frames, known), (held_out, apart)):
-        if given and not left:
-            raise UsageError(
-                f"none of {len(given)} frames has a truth to choose by: give --truth FILE, or "
-                "recordings that hold it (docs/how-to/attach-truth.md)"
-            )
+    if frames and not known:
+        raise UsageError(
+            f"none of {len(frames)} frames has a truth to choose by: give --truth FILE, or "
+            "recordings that hold it (docs/how-to/attach-truth.md)"
+        )
+    if held_out and not apart:
+        raise UsageError(
+            f"--held-out: none of {len(held_out)} frames has a truth to report on; --truth tells "
+            "that of the other recordings alone, so name one that holds its own: 'tactile-graph "
+            "convert RECORDING NEW.npz --truth FILE' writes it"
+        )
     return known, apart
 
 

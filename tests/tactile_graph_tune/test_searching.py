@@ -42,3 +42,10 @@ def test_frames_that_two_recordings_hold_are_taken_once_and_counted(hand_made):
     request = Request(load("ladder.yaml"), rounds=1, fields=("load.total",))
     found = searched(request, [*given[:24], *again, *scaled], [], lambda what, n, of: None)
     assert found.how == "recording by recording, less 4 frames that two of them hold"
+
+
+def test_frames_held_out_without_a_truth_are_refused_by_what_would_help(hand_made):
+    untold = [replace(f, truth=None) for f in frames(8)]
+    request = Request(load("ladder.yaml"), rounds=1)
+    with pytest.raises(UsageError, match="--held-out: none of 8 frames has a truth to report on"):
+        searched(request, frames(24), untold, lambda what, n, of: None)

@@ -51,7 +51,8 @@ Exit codes: 0 done, 2 not done, 130 interrupted by Ctrl-C, 143 ended by SIGTERM.
 @pipeline_argument
 @click.argument("recordings", metavar="[RECORDING]...", nargs=-1)
 @click.option("--truth", type=click.Path(path_type=Path), metavar="FILE",
-              help="What truly lay there; it replaces what the recordings say of that.",
+              help="What truly lay there, but for what is held out; it replaces what the "
+              "recordings say of that.",
               )  # fmt: skip
 @click.option("--held-out", multiple=True, metavar="RECORDING",
               help="Report on this recording, choose by the others; can be repeated.")  # fmt: skip
