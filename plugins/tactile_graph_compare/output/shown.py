@@ -44,7 +44,7 @@ def show(comparison: Comparison, console: Console) -> None:
         first, *rest = evolution_lines(evolution)
         console.print(Text(first, style="bold"), soft_wrap=True)
         for line in rest:
-            word = next((w for w in STYLES if line.endswith(w)), "")
+            word = next((w for w in STYLES if line.endswith(f", {w}")), "")
             console.print(Text(line, style=STYLES.get(word, "")), soft_wrap=True)
     if comparison.lineage:
         console.print()

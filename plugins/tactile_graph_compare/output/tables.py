@@ -138,7 +138,7 @@ def times(comparison: Comparison) -> Table:
                 v.label,
                 us(v.times.median_us),
                 us(v.times.p95_us),
-                f"× {against.ratio:.2f}" if against else "",
+                by_other(against.ratio) if against else "",
                 against.reference if against else "",
                 f"{ran.mean():.1f}" if ran.size else "",
                 f"{not_run.mean():.1f}" if not_run.size else "",
@@ -209,8 +209,8 @@ def evolution_lines(evolution: Evolution) -> Iterator[str]:
             bounds = interval if d.low is not None else ""
             yield f"  {d.quantity}: {signed(d.mean, d.unit)}{unit}{bounds}, {d.verdict}"
     yield (
-        f"  time: × {e.time.ratio:.2f} ({signed_us(e.time.median_us)} µs), medians over the frames "
-        "of the time by the parent's, and less it"
+        f"  time: {by_other(e.time.ratio)} ({signed_us(e.time.median_us)} µs), medians over the "
+        "frames of the time by the parent's, and less it"
     )
 
 
@@ -250,6 +250,11 @@ def signed(value: float | None, unit: str) -> str:
 def us(value: float) -> str:
     """Return microseconds with three or four digits."""
     return f"{value:.0f}" if value >= 100 else f"{value:.1f}"
+
+
+def by_other(ratio: float) -> str:
+    """Return the ratio of two times with no more digits than times of a machine are good for."""
+    return f"× {ratio:.{2 if ratio < 9.995 else 1 if ratio < 99.95 else 0}f}"
 
 
 def signed_us(value: float) -> str:

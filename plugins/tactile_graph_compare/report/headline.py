@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from tactile_graph_compare.output.tables import left_out, number, us
+from tactile_graph_compare.output.tables import by_other, left_out, number, us
 from tactile_graph_compare.records.comparison import Comparison, Variant
 from tactile_graph_compare.records.scores import Difference, Score
 from tactile_graph_compare.report.badges import chip, named, of
@@ -108,7 +108,7 @@ def _fastest(comparison: Comparison) -> Html | None:
     others = sorted((v for v in timed if v is not best), key=_spent)
     ratios = tag(
         "ul",
-        (tag("li", of(v), f" takes × {_ratio(v, best):.2f}") for v in others[:4]),
+        (tag("li", of(v), f" takes {by_other(_ratio(v, best))}") for v in others[:4]),
         class_="plain",
     )
     meant = "×: median over the frames of the time by the fastest one's in the same frame"

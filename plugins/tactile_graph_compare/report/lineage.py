@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tactile_graph.draw.grid_png import change_uri
 from tactile_graph.draw.paint_svg import View
 from tactile_graph.wires import Image, Mask
-from tactile_graph_compare.output.tables import signed, signed_us
+from tactile_graph_compare.output.tables import by_other, signed, signed_us
 from tactile_graph_compare.records.comparison import Comparison, Evolution, NodeChange
 from tactile_graph_compare.records.frames import ChosenFrame, NodeStory
 from tactile_graph_compare.records.scores import Difference
@@ -37,7 +37,7 @@ def _step(comparison: Comparison, album: Album, e: Evolution) -> Html:
     ]
     effect = [
         *(_effect(d) for d in e.differences if d.mean is not None),
-        tag("li", f"time: × {e.time.ratio:.2f} ({signed_us(e.time.median_us)} µs), medians "
+        tag("li", f"time: {by_other(e.time.ratio)} ({signed_us(e.time.median_us)} µs), medians "
             "over the frames of the time by the parent's, and less it"),
     ]  # fmt: skip
     frames = _frames(comparison, e)

@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 
 from tactile_graph_compare.output.shown import print_table
-from tactile_graph_compare.output.tables import Table
+from tactile_graph_compare.output.tables import Table, by_other
 
 ERRORS = Table(
     "Absolute errors",
@@ -49,3 +49,11 @@ def test_where_no_table_has_room_each_row_is_a_line_of_all_its_cells() -> None:
 def test_rows_of_numbers_alone_are_lines_as_well() -> None:
     table = Table("Front", ("µs predicted", "missed", "guard"), (("11.1", "0 %", "c1 alone"),))
     assert "µs predicted 11.1, missed" in " ".join(printed(table, 15)[0].split())
+
+
+@pytest.mark.parametrize(
+    ("ratio", "told"),
+    [(0.5, "× 0.50"), (9.99, "× 9.99"), (9.999, "× 10.0"), (123.456, "× 123"), (99.97, "× 100")],
+)
+def test_ratios_of_times_have_three_digits(ratio: float, told: str) -> None:
+    assert by_other(ratio) == told
