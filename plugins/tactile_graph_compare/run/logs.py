@@ -20,6 +20,9 @@ from tactile_graph_compare.score.statistics import frozen
 from tactile_graph_compare.variants.merge import Member
 from tactile_graph_compare.variants.prepare import PreparedVariant
 
+MOST_PLACEMENTS = 16
+"""Of a part of the frames, beyond which it matters no more how many there are."""
+
 
 class Noted(NamedTuple):
     """What was noted of a variant, as it travels between processes."""
@@ -138,11 +141,18 @@ class MergedLog:
         self._times_us: list[list[float]] = []
         self._states: list[bytes] = []
         self._frames: list[tuple[int, float, str, int, bool]] = []
+        self._placements: list[str] = []
+        self._seen: set[str] = set()
 
     @property
     def n(self) -> int:
         """Frames so far."""
         return len(self._frames)
+
+    @property
+    def n_placements(self) -> int:
+        """How many ways in which objects truly lay there are different."""
+        return len(set(self._placements))
 
     def add(self, frame: Frame, result: Result, whole_us: float) -> None:
         """Note a frame that took so long as a whole; NaN where that was not its own."""
@@ -154,10 +164,15 @@ class MergedLog:
         time_s = math.nan if frame.time_s is None else frame.time_s
         n_true = -1 if frame.truth is None else len(frame.truth)
         self._frames.append((frame.index, time_s, frame.label, n_true, result.reused))
+        if frame.truth and len(self._seen) < MOST_PLACEMENTS:
+            placement = repr(frame.truth)
+            if placement not in self._seen:
+                self._seen.add(placement)
+                self._placements.append(placement)
 
     def noted(self) -> tuple[list[Any], ...]:
         """Return what was noted so far, as it travels between processes."""
-        return self.fixed_us, self._times_us, self._states, self._frames
+        return self.fixed_us, self._times_us, self._states, self._frames, self._placements
 
     def join(self, later: tuple[list[Any], ...]) -> None:
         """Note what was noted elsewhere of the frames that come next."""

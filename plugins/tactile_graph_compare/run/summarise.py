@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from tactile_graph_compare.run.logs import VariantLog
 from tactile_graph_compare.run.merged_graph import merged_graph
 from tactile_graph_compare.run.session import Session
 from tactile_graph_compare.score.statistics import (
+    LEAST_FRAMES,
     difference_of,
     for_all_together,
     score_of,
@@ -87,9 +88,21 @@ def summarise(
         provenance=_provenance(session, report or Report(), interrupted, start),
         seconds=session.last - session.started,
         interrupted=interrupted,
-        notes=tuple(notes),
+        notes=(*notes, *_few_placements(session)),
         n_left_out=n_left_out,
     )
+
+
+def _few_placements(session: Session) -> Iterator[str]:
+    """Yield that frames are hardly more than one another again, where they are."""
+    log = session.merged_log
+    n, n_frames = log.n_placements, int((log.frames().n_true > 0).sum())
+    if 0 < n < LEAST_FRAMES and n_frames >= LEAST_FRAMES * n:
+        yield (
+            f"in {n_frames} frames objects lie in {n} way{'s' * (n != 1)} alone: frames of one are "
+            "hardly more than one, so intervals are too narrow and verdicts too sure; put the "
+            "objects down anew"
+        )
 
 
 def _scored(log: VariantLog) -> dict[str, Any]:

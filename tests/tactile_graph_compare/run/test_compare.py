@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import pickle
 import re
-from itertools import pairwise
+from itertools import islice, pairwise
 
 import numpy as np
 import pytest
@@ -336,3 +336,14 @@ def test_a_comparison_comes_back_from_a_pickle():
     assert again.graph.pipeline.outputs == c.graph.pipeline.outputs
     assert again.variants[0].pipeline.source is None
     assert again.quantities == c.quantities
+
+
+@pytest.mark.parametrize(("n_places", "told"), [(1, "1 way "), (2, "2 ways "), (5, "")])
+def test_few_placements_in_many_frames_are_told(n_places, told):
+    """Of twelve frames."""
+    given = [*islice(both().variants[0].pipeline.frames(), n_places)]
+    again = [given[i % n_places].with_index(i) for i in range(12)]
+    notes = compare(["discs", "next.yaml"], frames=again).notes
+    assert [n.startswith(f"in 12 frames objects lie in {told}alone") for n in notes] == (
+        [True] if told else []
+    )
