@@ -11,6 +11,7 @@ from tactile_graph import Circle, load
 from tactile_graph.errors import UsageError
 from tactile_graph.wires import TrueObject
 from tactile_graph_tune import Request
+from tactile_graph_tune.request import Free
 from tactile_graph_tune.searching import searched
 
 
@@ -49,3 +50,19 @@ def test_frames_held_out_without_a_truth_are_refused_by_what_would_help(hand_mad
     request = Request(load("ladder.yaml"), rounds=1)
     with pytest.raises(UsageError, match="--held-out: none of 8 frames has a truth to report on"):
         searched(request, frames(24), untold, lambda what, n, of: None)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("given", "taken"), [(0.5, None), (1.5, 0.4)])
+def test_of_free_values_that_come_to_the_same_the_given_or_the_middle_one_is_taken(
+    hand_made, given, taken
+):
+    """Every cell that is pressed holds 1 V or more; nothing is as heavy as 1.5 V."""
+    pipeline = load("ladder.yaml").with_settings({"footprint.level_v": given})
+    free = (Free("footprint.level_v", (0.3, 0.4, 0.6)),)
+    request = Request(pipeline, rounds=1, fields=("load.total",), free=free, most_us=1e9,
+                      most_missed=1.0, most_false=1.0)  # fmt: skip
+    found = searched(request, frames(24), [], lambda what, n, of: None)
+    assert found.variants[found.chosen.variant].settings.get("footprint.level_v") == taken
+    alike = (0.3, 0.4, 0.6) if taken else (given, 0.3, 0.4, 0.6)
+    assert found.as_good == {"footprint.level_v": alike}
