@@ -19,6 +19,8 @@ from tactile_graph.plugins.registry import installed
 from tactile_graph.steps import Grid, Quantity
 from tactile_graph.steps.checks import check_signature
 from tactile_graph.steps.signature import read_signature
+from tactile_graph.steps.stacked import stacked_kinds
+from tactile_graph.wires.stacks import Stack
 
 
 def below(image: Image, *, level: Annotated[int, Ge(3)] = 1) -> Image:
@@ -201,12 +203,20 @@ def frames_form(image: list[Image]) -> Any:
     return image
 
 
+def absent_form(image: Absent) -> Any:  # type: ignore[name-defined]  # noqa: F821
+    return image
+
+
+def any_form(image: Any) -> Any:
+    return image
+
+
 @pytest.mark.parametrize(
     ("form", "message"),
     [
         (plain_form, "its stacked form must annotate each port with the stack it takes: 'image'"),
         (frames_form, r"its stacked form: port 'image' is list\[Image\], which is no type of"),
-        (3, "its stacked form has no annotations that can be read: "),
+        (absent_form, "its stacked form has no annotations that can be read: name 'Absent'"),
     ],
 )
 def test_a_stacked_form_must_say_which_stacks_it_takes(form: Any, message: str) -> None:
@@ -216,6 +226,27 @@ def test_a_stacked_form_must_say_which_stacks_it_takes(form: Any, message: str) 
     largest.stacked = form  # type: ignore[attr-defined]
     with pytest.raises(PluginError, match=f"step 'x': {message}"):
         check_signature(read_signature("x", largest))
+
+
+@pytest.mark.parametrize("own", [False, 3, "wide"])
+def test_an_attribute_of_a_plugins_own_is_no_stacked_form(own: Any) -> None:
+    class Largest:
+        stacked = own
+
+        def __call__(self, image: Image) -> float:
+            return float(image.values.max())
+
+    signature = read_signature("x", Largest)
+    check_signature(signature)
+    assert stacked_kinds(signature) is None
+
+
+def test_a_stacked_form_that_takes_anything_takes_any_stack() -> None:
+    def largest(image: Image) -> float:
+        return float(image.values.max())
+
+    largest.stacked = any_form  # type: ignore[attr-defined]
+    assert stacked_kinds(read_signature("x", largest)) == {"image": Stack}
 
 
 @dataclasses.dataclass
