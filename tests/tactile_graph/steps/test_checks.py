@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -13,9 +14,11 @@ from annotated_types import Ge, Len, Lt, MinLen, MultipleOf
 from pydantic import Field, StringConstraints
 from typing_extensions import TypedDict as ExtendedTypedDict
 
-from tactile_graph import Circle, Frame, Image, Mask
-from tactile_graph.errors import PluginError
+from helpers_graphs import registry
+from tactile_graph import Circle, Frame, Image, Mask, loads
+from tactile_graph.errors import PipelineError, PluginError
 from tactile_graph.plugins.registry import installed
+from tactile_graph.schema import pipeline_schema
 from tactile_graph.steps import Grid, Quantity
 from tactile_graph.steps.checks import check_signature
 from tactile_graph.steps.signature import read_signature
@@ -260,6 +263,29 @@ class Whole(Lacking):
     @property
     def x_mm(self) -> float:
         return 10.0 * self.x_cm
+
+
+class Told:
+    @property
+    def columns_shown(self) -> tuple[str, ...]:
+        return ("x_cm",)
+
+
+def test_columns_that_are_no_names_are_told_to_the_author() -> None:
+    def gives(image: Image) -> list[Told]:
+        return []
+
+    text = "pipeline: p\nnodes: {a: {step: gives, in: frame}}\noutputs: [a]"
+    told = (
+        "step 'gives': its answer Told has a property as its columns_shown: it must be a tuple "
+        r"of names, the class's own \(plugin 'test', package test-package\)"
+    )
+    found = registry({"gives": gives})
+    with pytest.raises(PipelineError, match=told):
+        loads(text, "p.yaml", found)
+    _, troubles = pipeline_schema(found)
+    assert len(troubles) == 1
+    assert re.fullmatch(told, troubles[0])
 
 
 def test_a_dataclass_has_the_columns_it_shows() -> None:
