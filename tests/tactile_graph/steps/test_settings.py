@@ -222,6 +222,9 @@ def floats(
     few: Annotated[float, Le(5.0)] = 1.0,
     most: float | None = None,
     anything: Any = None,
+    table: dict[str, Any] | float = 1.0,
+    cells: np.ndarray | None = None,
+    some: frozenset[float] = frozenset(),
     title: str = "",
     open_end: float = math.nan,
 ) -> int:
@@ -239,7 +242,8 @@ def floats(
         ({"model": {"weight": math.nan}}, "model.weight", "must be a number, got nan"),
         ({"few": math.nan}, "few", "must be a number, got nan"),
         ({"most": math.nan}, "most", "must be a number or null, got nan"),
-        ({"anything": {"a": [1, math.nan]}}, "anything.a.1", "must be a number, got nan"),
+        ({"cells": [math.nan]}, "cells.0", "must be a number, got nan"),
+        ({"some": [math.nan]}, "some.0", "must be a number, got nan"),
         ({"title": math.nan}, "title", "must be a text, got nan"),
     ],
 )
@@ -253,6 +257,16 @@ def test_no_limit_and_a_default_that_is_nan_may_be_given() -> None:
     values, found = validate_settings(read_signature("floats", floats), given)
     assert not found
     assert (values["plain"], values["span"][0], values["title"]) == (math.inf, -math.inf, "nan")
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"anything": math.nan}, {"anything": {"a": [1, math.nan]}}, {"table": {"a": math.nan}}],
+)
+def test_nan_may_stand_where_anything_may(given) -> None:
+    values, found = validate_settings(read_signature("floats", floats), given)
+    assert not found
+    assert repr({name: values[name] for name in given}) == repr(given)
 
 
 class Odd(BaseModel):
