@@ -97,7 +97,7 @@ def _show(out: Console, report: PluginReport) -> None:
     out.print(words, soft_wrap=True)
     for line in report.broken:
         out.print(Text(f"  {line}"), soft_wrap=True)
-    for told in report.clashes:
+    for told in (*report.clashes, *report.advice):
         out.print(Text(f"  {told}", style="yellow"), soft_wrap=True)
     for name, why in report.untried.items():
         out.print(Text(f"  step {name!r} was not tried: {why}", style="yellow"), soft_wrap=True)

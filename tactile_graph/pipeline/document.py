@@ -377,6 +377,10 @@ class _Reader:
         return result
 
 
+_WRITTEN = ('""', "''", "[]", "{}")
+"""What a value begins and ends with that is written as YAML has it."""
+
+
 def assignment(
     option: str,
     text: str,
@@ -390,30 +394,32 @@ def assignment(
     option, text : str
     takes_text : callable
         Whether a setting of some name may be any text: what is no YAML, such as ``%H:%M`` or
-        ``#3``, is taken as it is typed there.
+        ``#3``, is taken as it is typed there, and so is a text with `` #`` in it.
     takes_paths : callable
-        Whether a setting of some name is a path or several: what YAML reads as no text, such as
-        ``D:`` or ``2024``, is taken as it is typed there.
+        Whether a setting of some name is a path or several: all but null and what stands in quotes
+        or brackets, such as ``D:``, ``2024`` or ``rec #2.npz``, is taken as it is typed there.
 
     Raises
     ------
     UsageError
         If there is no ``=``, or the value is no plain YAML.
     """
-    name, sign, value = text.partition("=")
+    name, sign, value = (part.strip() for part in text.partition("="))
     form = "node.setting=value" if option == "--set" else "key=value"
-    if not sign or not name.strip():
+    if not sign or not name:
         raise UsageError(f"{option} {text}: must be {form}")
-    if not value.strip():
-        return name.strip(), ""
-    document = read_document(value, f"{option} {name.strip()}")
-    if document.problems and takes_text(name.strip()):
-        return name.strip(), value.strip()
-    if value.lstrip().startswith("#"):
+    if not value:
+        return name, ""
+    document = read_document(value, f"{option} {name}")
+    data = None if document.problems else document.data
+    written = not document.problems and (value[0] + value[-1] in _WRITTEN or data is None)
+    if takes_paths(name) and not written:
+        return name, value
+    cut = isinstance(data, str) and " #" in value and not written
+    if takes_text(name) and (document.problems or cut):
+        return name, value
+    if value.startswith("#"):
         raise UsageError(f"{option} {text}: a comment of YAML; put a text in quotes")
     if document.problems:
         raise UsageError(f"{option} {text}: {document.problems[0].message}")
-    is_written = value.lstrip().startswith("{") or isinstance(document.data, str | list | None)
-    if not is_written and takes_paths(name.strip()):
-        return name.strip(), value.strip()
-    return name.strip(), document.data
+    return name, data

@@ -6,7 +6,7 @@ import dataclasses
 import sys
 import types
 import typing
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import replace
 from typing import Any, Union, get_args, get_origin
 
@@ -180,6 +180,8 @@ def _output(signature: Signature) -> Iterator[str]:
 def _absent_column(kind: Any) -> str:
     """Return which field a dataclass says tables show and has not; of others only values tell."""
     of: Any = get_origin(kind) or kind
+    if odd := odd_columns(of):
+        return f"its answer {type_name(of)} {odd}"
     if not dataclasses.is_dataclass(of) or hasattr(of, "__getattr__"):
         return ""
     there = [*dir(of), *(f.name for f in dataclasses.fields(of))]
@@ -188,6 +190,25 @@ def _absent_column(kind: Any) -> str:
             hint = did_you_mean(name, there)
             return f"its answer {type_name(of)} lacks {name!r} of its columns_shown{hint}"
     return ""
+
+
+def odd_columns(kind: Any) -> str:
+    """Return what a type has in place of the names that tables show of it; "" where it has them.
+
+    Parameters
+    ----------
+    kind : type
+        Of a value that a step gives.
+
+    Returns
+    -------
+    str
+    """
+    shown = getattr(kind, "columns_shown", ())
+    if isinstance(shown, Collection) and not isinstance(shown, str):
+        return ""
+    got = type(shown).__name__
+    return f"has a {got} as its columns_shown: it must be a tuple of names, the class's own"
 
 
 def _yields_frames(output: Any) -> bool:

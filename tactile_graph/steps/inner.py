@@ -5,9 +5,11 @@ from __future__ import annotations
 import dataclasses
 import types
 from collections.abc import Iterator, Mapping
+from collections.abc import Set as AbstractSet
 from enum import Enum
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
+from tactile_graph.steps.arrays import is_array
 from tactile_graph.steps.signature import list_item, strip, type_name
 
 Place = tuple[str | int, ...]
@@ -74,6 +76,15 @@ def _items(annotation: Any, part: str | int) -> Iterator[Any]:
             yield found
 
 
+def is_open(annotation: Any, at: Place) -> bool:
+    """Return whether a setting's type leaves it open what stands at a place within it."""
+    for part in at:
+        if any(is_array(bare) or _is_set(bare) for bare in members(annotation)):
+            return False
+        annotation = item(annotation, part)
+    return not {Any, object}.isdisjoint(members(annotation))
+
+
 def members(annotation: Any) -> list[Any]:
     """Return the bare types of which a value may be any: those of a union, else the one."""
     bare, _ = strip(annotation)
@@ -125,6 +136,11 @@ def _any_of(annotations: list[Any]) -> Any:
 def _is_mapping(bare: Any) -> bool:
     origin = get_origin(bare)
     return isinstance(origin, type) and issubclass(origin, Mapping) and len(get_args(bare)) == 2
+
+
+def _is_set(bare: Any) -> bool:
+    origin = get_origin(bare)
+    return isinstance(origin, type) and issubclass(origin, AbstractSet)
 
 
 def place(given: Any, parts: tuple[str | int, ...]) -> Place:

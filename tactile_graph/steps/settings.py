@@ -17,6 +17,7 @@ from tactile_graph.steps.arrays import is_array, with_arrays
 from tactile_graph.steps.inner import (
     Place,
     fields,
+    is_open,
     item,
     key_of,
     leaves,
@@ -143,11 +144,14 @@ def _mistyped(setting: Setting, value: Any) -> dict[Place, str]:
 def _not_numbers(setting: Setting, value: Any) -> dict[Place, str]:
     """Return what is wrong with each NaN; infinity may well mean that there is no limit.
 
-    Where a setting is NaN unless given, it may be given, too: a resolved pipeline holds it.
+    Where a setting is NaN unless given, it may be given, too: a resolved pipeline holds it. So may
+    it where anything may stand.
     """
     if _is_nan(value) and _is_nan(setting.default):
         return {}
-    wrong = {at: f"must be a number, got {leaf}" for at, leaf in _all(value) if _is_nan(leaf)}
+    nans = [(at, leaf) for at, leaf in _all(value) if _is_nan(leaf)]
+    told = [(at, leaf) for at, leaf in nans if not is_open(setting.annotation, at)]
+    wrong = {at: f"must be a number, got {leaf}" for at, leaf in told}
     for at, annotation, leaf in leaves(setting.annotation, value):
         if at in wrong and annotation is not Any:
             wrong[at] = f"must be {_allowed(annotation)}, got {leaf}"

@@ -15,24 +15,28 @@ STACKED = "stacked"
 def stacked_kinds(signature: Signature) -> Mapping[str, Any] | None:
     """Return which stack each port of a step's form for stacks takes; None where it offers none.
 
+    An attribute that cannot be called is a plugin's own; a port that takes ``Any`` takes any stack.
+
     Raises
     ------
     PluginError
         If the form does not say so of each port.
     """
     form = getattr(signature.target, STACKED, None)
-    if form is None:
+    if not callable(form):
         return None
+    from tactile_graph.wires.stacks import Stack
+
     what = f"step {signature.name!r}: its stacked form"
     try:
         hints = get_type_hints(form)
-    except Exception as error:  # no function, or names that nothing defines
+    except Exception as error:  # names that nothing defines, or no function
         raise PluginError(f"{what} has no annotations that can be read: {error}") from None
     if absent := [p.name for p in signature.ports if p.name not in hints]:
         raise PluginError(
             f"{what} must annotate each port with the stack it takes: {absent[0]!r} has none"
         )
-    kinds = {port.name: hints[port.name] for port in signature.ports}
+    kinds = {p.name: Stack if hints[p.name] is Any else hints[p.name] for p in signature.ports}
     for name, kind in kinds.items():
         try:
             isinstance(None, kind)

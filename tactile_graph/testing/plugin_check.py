@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from tactile_graph.errors import (
     PipelineError,
@@ -18,6 +18,7 @@ from tactile_graph.errors import (
 from tactile_graph.exporter import Exporter, Holds
 from tactile_graph.plugins.names import Plugin, qualified, singular
 from tactile_graph.plugins.registry import Registry
+from tactile_graph.steps.signature import type_name
 from tactile_graph.testing.here import StepReport, examined_here
 
 FILES = ("pads", "presets", "scenes")
@@ -36,6 +37,8 @@ class PluginReport:
         Why a step was not tried, by name.
     clashes : list of str
         A line for each of its names that another plugin has too; that breaks nothing.
+    advice : list of str
+        A line for each of its steps that could be of more use; that breaks nothing.
     n_offers : int
         How many things were looked at.
     """
@@ -44,6 +47,7 @@ class PluginReport:
     broken: list[str] = field(default_factory=list)
     untried: dict[str, str] = field(default_factory=dict)
     clashes: list[str] = field(default_factory=list)
+    advice: list[str] = field(default_factory=list)
     n_offers: int = 0
 
 
@@ -76,20 +80,34 @@ def examine_plugin(
             told(what)
             report.n_offers += 1
             if kind == "steps":
-                _look_at_step(report, examine, name)
+                _look_at_step(report, registry, examine, name)
             else:
                 report.broken += [f"{what}: {w}" for w in _wrong(registry, kind, name)]
     report.clashes += [told for told in registry.clashes if plugin.label in told]
     return report
 
 
-def _look_at_step(report: PluginReport, examine: Callable[[str], StepReport], name: str) -> None:
+def _look_at_step(
+    report: PluginReport, registry: Registry, examine: Callable[[str], StepReport], name: str
+) -> None:
     found = examine(name)
     report.broken += found.lines()
     if found.untried:
         report.untried[name] = found.untried
     elif not found.broken and not found.n_values:
         report.untried[name] = "it gave no value in any case"
+    if found.n_values and (kind := _unnamed(registry.step(name).output)):
+        report.advice.append(
+            f"step {name!r} gives {kind}, of which tables only show how many items there are; a "
+            "NamedTuple gives each a name, a column, and wires of its own"
+        )
+
+
+def _unnamed(output: Any) -> str:
+    """Return the type of an output that is a plain tuple of numbers or texts, else empty."""
+    items = get_args(output) if get_origin(output) is tuple else ()
+    plain = any(isinstance(k, type) and issubclass(k, bool | int | float | str) for k in items)
+    return type_name(output) if plain and Ellipsis not in items else ""
 
 
 def _wrong(registry: Registry, kind: str, name: str) -> Iterator[str]:

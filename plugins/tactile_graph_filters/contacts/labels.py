@@ -20,38 +20,47 @@ def _label_plain(
 ) -> NDArray[np.float64]:
     """Write component numbers (from 1, 0 = off) into ``labels``; return a row of sums for each.
 
-    Numbers go by the first cell of a component in reading order.
+    Numbers go by the first cell of a component in reading order. Cells are taken in
+    the order of the compiled twin.
     """
-    rows, columns = on.shape
-    far = on.size
-    first = np.where(on, np.arange(far).reshape(on.shape), far)  # of the component, as known so far
-    steps = [(0, 1), (1, 0), (1, 1), (1, -1)] if eight else [(0, 1), (1, 0)]
-    while True:
-        padded = np.pad(first, 1, constant_values=far)
-        lowest = first
-        for i, j in [*steps, *((-i, -j) for i, j in steps)]:
-            lowest = np.minimum(lowest, padded[1 + i : 1 + i + rows, 1 + j : 1 + j + columns])
-        lowest = np.where(on, lowest, far)
-        if np.array_equal(lowest, first):
-            break
-        first = lowest
-    seen = np.unique(first[on])
-    labels[...] = np.where(on, np.searchsorted(seen, first) + 1, 0)
-    return np.array([_sums(values, labels == n + 1) for n in range(seen.size)], np.float64).reshape(
-        -1, N_SUMS
-    )
+    width = on.shape[1] + 2  # with a rim, so that all neighbours of a cell are there
+    rimmed = np.pad(on, 1).ravel()
+    waits = rimmed.tolist()
+    steps = [i * width + j for i in (-1, 0, 1) for j in (-1, 0, 1) if eight or i == 0 or j == 0]
+    labels[...] = 0
+    sums: list[list[Any]] = []
+    for start in np.flatnonzero(rimmed).tolist():
+        if not waits[start]:
+            continue
+        part, stack = [], [start]
+        waits[start] = False
+        while stack:
+            at = stack.pop()
+            part.append(at)
+            near = [at + step for step in steps if waits[at + step]]
+            stack += near
+            for cell in near:
+                waits[cell] = False
+        y, x = np.divmod(np.array(part), width)
+        labels[y - 1, x - 1] = len(sums) + 1
+        sums.append(_sums(values, y - 1, x - 1))
+    return np.array(sums, np.float64).reshape(-1, N_SUMS)
 
 
-def _sums(values: NDArray[np.float64], part: NDArray[np.bool_]) -> list[Any]:
-    y, x = np.nonzero(part)
-    load = values[part]
+def _sums(values: NDArray[np.float64], y: NDArray[np.intp], x: NDArray[np.intp]) -> list[Any]:
+    load = values[y, x]
     positive = np.where(load > 0, load, 0.0)
     with np.errstate(over="ignore", invalid="ignore"):  # found out by what comes out
         return [
-            x.size, load.sum(), load.max(), x.sum(), y.sum(),
-            positive.sum(), (x * positive).sum(), (y * positive).sum(),
+            x.size, _sum(load), load.max(), x.sum(), y.sum(),
+            _sum(positive), _sum(x * positive), _sum(y * positive),
             y.min(), y.max(), x.min(), x.max(),
         ]  # fmt: skip
+
+
+def _sum(values: NDArray[Any]) -> float:
+    """Return a sum in the order of the values: to the last bit that of the compiled twin."""
+    return 0.0 + float(np.add.accumulate(values)[-1])
 
 
 @compiled_twin_of(_label_plain)

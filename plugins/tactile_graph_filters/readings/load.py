@@ -72,7 +72,7 @@ def counts_cells_at_rest(image: Image, value: Load) -> str:
     if image.valid is not None:
         on &= image.valid
     share = 1.0 - float(image.values[on].sum()) / value.total
-    if share <= LARGE_SHARE:
+    if share <= LARGE_SHARE or not on.any():  # a load on the whole pad leaves none to tell it from
         return ""
     return (
         f"{share:.0%} of the total is of cells that do not stand out of the others, below "

@@ -62,6 +62,7 @@ def open_source(
 def _frames(source: Source, seed: int, report: Report, in_stacks: bool) -> Iterator[Any]:
     signature = source.signature
     form = getattr(signature.target, "stacked", None) if in_stacks else None
+    form = form if callable(form) else None
     target = signature.target if form is None else form
     injected: dict[str, Any] = {}
     if signature.rng:

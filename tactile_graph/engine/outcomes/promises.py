@@ -20,6 +20,7 @@ from tactile_graph.errors import PluginError, did_you_mean
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import arms, public_fields
 from tactile_graph.plugins.registry import Registry
+from tactile_graph.steps.checks import odd_columns
 from tactile_graph.steps.rules import Grid
 from tactile_graph.steps.signature import Signature, list_item, type_name
 from tactile_graph.wires.image import Image, Mask
@@ -101,6 +102,8 @@ def absent_column(value: Any) -> str:
     if isinstance(value, list | tuple):
         return next(filter(None, map(absent_column, value[:MOST_ITEMS])), "")
     kind, there = type(value), dir(value)
+    if odd := odd_columns(kind):
+        return f"gave {kind.__name__}, which {odd}"
     for name in getattr(kind, "columns_shown", ()):
         if name not in there and not hasattr(value, name):
             hint = did_you_mean(name, there)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -13,12 +14,16 @@ from annotated_types import Ge, Len, Lt, MinLen, MultipleOf
 from pydantic import Field, StringConstraints
 from typing_extensions import TypedDict as ExtendedTypedDict
 
-from tactile_graph import Circle, Frame, Image, Mask
-from tactile_graph.errors import PluginError
+from helpers_graphs import registry
+from tactile_graph import Circle, Frame, Image, Mask, loads
+from tactile_graph.errors import PipelineError, PluginError
 from tactile_graph.plugins.registry import installed
+from tactile_graph.schema import pipeline_schema
 from tactile_graph.steps import Grid, Quantity
 from tactile_graph.steps.checks import check_signature
 from tactile_graph.steps.signature import read_signature
+from tactile_graph.steps.stacked import stacked_kinds
+from tactile_graph.wires.stacks import Stack
 
 
 def below(image: Image, *, level: Annotated[int, Ge(3)] = 1) -> Image:
@@ -201,12 +206,20 @@ def frames_form(image: list[Image]) -> Any:
     return image
 
 
+def absent_form(image: Absent) -> Any:  # type: ignore[name-defined]  # noqa: F821
+    return image
+
+
+def any_form(image: Any) -> Any:
+    return image
+
+
 @pytest.mark.parametrize(
     ("form", "message"),
     [
         (plain_form, "its stacked form must annotate each port with the stack it takes: 'image'"),
         (frames_form, r"its stacked form: port 'image' is list\[Image\], which is no type of"),
-        (3, "its stacked form has no annotations that can be read: "),
+        (absent_form, "its stacked form has no annotations that can be read: name 'Absent'"),
     ],
 )
 def test_a_stacked_form_must_say_which_stacks_it_takes(form: Any, message: str) -> None:
@@ -216,6 +229,27 @@ def test_a_stacked_form_must_say_which_stacks_it_takes(form: Any, message: str) 
     largest.stacked = form  # type: ignore[attr-defined]
     with pytest.raises(PluginError, match=f"step 'x': {message}"):
         check_signature(read_signature("x", largest))
+
+
+@pytest.mark.parametrize("own", [False, 3, "wide"])
+def test_an_attribute_of_a_plugins_own_is_no_stacked_form(own: Any) -> None:
+    class Largest:
+        stacked = own
+
+        def __call__(self, image: Image) -> float:
+            return float(image.values.max())
+
+    signature = read_signature("x", Largest)
+    check_signature(signature)
+    assert stacked_kinds(signature) is None
+
+
+def test_a_stacked_form_that_takes_anything_takes_any_stack() -> None:
+    def largest(image: Image) -> float:
+        return float(image.values.max())
+
+    largest.stacked = any_form  # type: ignore[attr-defined]
+    assert stacked_kinds(read_signature("x", largest)) == {"image": Stack}
 
 
 @dataclasses.dataclass
@@ -229,6 +263,29 @@ class Whole(Lacking):
     @property
     def x_mm(self) -> float:
         return 10.0 * self.x_cm
+
+
+class Told:
+    @property
+    def columns_shown(self) -> tuple[str, ...]:
+        return ("x_cm",)
+
+
+def test_columns_that_are_no_names_are_told_to_the_author() -> None:
+    def gives(image: Image) -> list[Told]:
+        return []
+
+    text = "pipeline: p\nnodes: {a: {step: gives, in: frame}}\noutputs: [a]"
+    told = (
+        "step 'gives': its answer Told has a property as its columns_shown: it must be a tuple "
+        r"of names, the class's own \(plugin 'test', package test-package\)"
+    )
+    found = registry({"gives": gives})
+    with pytest.raises(PipelineError, match=told):
+        loads(text, "p.yaml", found)
+    _, troubles = pipeline_schema(found)
+    assert len(troubles) == 1
+    assert re.fullmatch(told, troubles[0])
 
 
 def test_a_dataclass_has_the_columns_it_shows() -> None:

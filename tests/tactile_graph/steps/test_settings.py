@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, field_validator
 from typing_extensions import TypedDict
 
+from tactile_graph.errors import shown
 from tactile_graph.pipeline.plain import as_given
 from tactile_graph.steps.inner import written_type
 from tactile_graph.steps.settings import spelled, validate_settings
@@ -221,6 +222,9 @@ def floats(
     few: Annotated[float, Le(5.0)] = 1.0,
     most: float | None = None,
     anything: Any = None,
+    table: dict[str, Any] | float = 1.0,
+    cells: np.ndarray | None = None,
+    some: frozenset[float] = frozenset(),
     title: str = "",
     open_end: float = math.nan,
 ) -> int:
@@ -238,7 +242,8 @@ def floats(
         ({"model": {"weight": math.nan}}, "model.weight", "must be a number, got nan"),
         ({"few": math.nan}, "few", "must be a number, got nan"),
         ({"most": math.nan}, "most", "must be a number or null, got nan"),
-        ({"anything": {"a": [1, math.nan]}}, "anything.a.1", "must be a number, got nan"),
+        ({"cells": [math.nan]}, "cells.0", "must be a number, got nan"),
+        ({"some": [math.nan]}, "some.0", "must be a number, got nan"),
         ({"title": math.nan}, "title", "must be a text, got nan"),
     ],
 )
@@ -252,6 +257,16 @@ def test_no_limit_and_a_default_that_is_nan_may_be_given() -> None:
     values, found = validate_settings(read_signature("floats", floats), given)
     assert not found
     assert (values["plain"], values["span"][0], values["title"]) == (math.inf, -math.inf, "nan")
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"anything": math.nan}, {"anything": {"a": [1, math.nan]}}, {"table": {"a": math.nan}}],
+)
+def test_nan_may_stand_where_anything_may(given) -> None:
+    values, found = validate_settings(read_signature("floats", floats), given)
+    assert not found
+    assert repr({name: values[name] for name in given}) == repr(given)
 
 
 class Odd(BaseModel):
@@ -300,3 +315,59 @@ def test_a_list_of_numbers_is_taken_where_an_array_is_meant() -> None:
 def test_what_was_got_is_told_of_arrays_and_of_a_models_own_rules(given, message) -> None:
     _, found = validate_settings(read_signature("weighs", weighs), given)
     assert [told for _, told in found] == [message]
+
+
+def holds_arrays(
+    image: int,
+    *,
+    whole: NDArray[np.int32] | None = None,
+    tiny: NDArray[np.uint8] | None = None,
+    short: NDArray[np.float32] | None = None,
+    mask: NDArray[np.bool_] | None = None,
+    free: np.ndarray | None = None,
+) -> int:
+    """Take arrays that say what they hold."""
+    return image
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "kept"),
+    [
+        ("whole", [-1, 2.0, "3e3"], [-1, 2, 3000]),
+        ("tiny", [[1, 255]], [[1, 255]]),
+        ("tiny", [], []),
+        ("short", [0.1, math.inf, 2**64], [np.float32(0.1), math.inf, 2.0**64]),
+        ("short", ["3.4028235e38"], [np.finfo(np.float32).max]),
+        ("mask", [True, False], [True, False]),
+        ("free", ["1e-2", 1], [0.01, 1.0]),
+    ],
+)
+def test_an_array_holds_the_numbers_of_the_file_as_its_type_says(name, given, kept) -> None:
+    kinds = {"whole": np.int32, "tiny": np.uint8, "short": np.float32, "mask": np.bool_}
+    values, found = validate_settings(read_signature("holds", holds_arrays), {name: given})
+    assert not found
+    assert values[name].dtype == kinds.get(name, np.float64)
+    assert values[name].tolist() == kept
+
+
+INT32 = "whole numbers from -2147483648 to 2147483647 (int32)"
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "message"),
+    [
+        ("whole", [1, 3000000000], f"{INT32}, got 3000000000"),
+        ("whole", [1, 1.5], f"{INT32}, got 1.5"),
+        ("tiny", [1, 300], "whole numbers from 0 to 255 (uint8), got 300"),
+        ("tiny", [1, math.inf], "whole numbers from 0 to 255 (uint8), got inf"),
+        ("short", [1, 1e39], "numbers up to 3.4e+38 (float32), got 1e+39"),
+        ("short", [10**400], f"numbers up to 3.4e+38 (float32), got {shown(10**400)}"),
+        ("short", [True, False], f"a list of numbers or null, got {shown([True, False])}"),
+        ("mask", [1, 0], "a list of numbers or null, got [1, 0]"),
+        ("free", [True, 2], f"a list of numbers or null, got {shown([True, 2])}"),
+        ("free", ["0.2", 2], "a list of numbers or null, got ['0.2', 2]"),
+    ],
+)
+def test_an_array_refuses_numbers_that_its_type_cannot_hold(name, given, message) -> None:
+    _, found = validate_settings(read_signature("holds", holds_arrays), {name: given})
+    assert found == [((name,), f"must be {message}")]

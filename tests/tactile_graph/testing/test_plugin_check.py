@@ -36,6 +36,14 @@ def needy(mask: Mask, *, level: int) -> int:
     return level
 
 
+def corner(mask: Mask) -> tuple[int, float]:
+    return mask.count, mask.area_cm2
+
+
+def counts(mask: Mask) -> tuple[int, ...]:
+    return (mask.count,)
+
+
 def offering(**offers: Any) -> ModuleType:
     module = ModuleType("mine")
     for kind, named in offers.items():
@@ -131,6 +139,17 @@ def test_the_shell_shows_what_is_wrong_and_what_is_right(
     assert lines[2].startswith("  step 'needy' was not tried: setting 'level' is missing")
     assert show_checked(registry_of(offering(steps={"counted": counted})), "")
     assert capsys.readouterr().out == "mine (my-package 1.2): right  1 offer\n"
+
+
+def test_of_a_tuple_without_names_it_is_told_what_names_would_give(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    registry = registry_of(offering(steps={"corner": corner, "counts": counts}))
+    assert show_checked(registry, "mine")
+    first, advice = capsys.readouterr().out.splitlines()
+    assert first == "mine (my-package 1.2): right  2 offers"
+    assert advice.startswith("  step 'corner' gives tuple[int, float], of which tables only show ")
+    assert "; a NamedTuple gives each a name" in advice
 
 
 def test_an_unknown_plugin_and_none_at_all_are_told() -> None:

@@ -126,6 +126,18 @@ def test_both_twins_label_as_scipy_does(twin, eight):
             assert table[k] == pytest.approx(sums)
 
 
+@pytest.mark.parametrize("eight", [False, True])
+def test_both_twins_sum_alike_to_the_last_bit(eight):
+    """A frame's answer does not tell whether the frames before it had the loops compiled."""
+    for seed, shape in enumerate([(16, 16), (3, 40), (33, 9)]):
+        on = random_mask(seed, shape, 0.7).values
+        values = np.random.default_rng(seed).normal(size=shape)
+        plain, looped = (np.empty(shape, np.int32) for _ in range(2))
+        sums = label.reference(values, on, eight, plain)
+        assert np.array_equal(sums, label.loops(values, on, eight, looped))
+        assert np.array_equal(plain, looped)
+
+
 @settings(max_examples=40, deadline=None)
 @given(masks(), st.booleans())
 def test_the_contacts_cover_the_mask_exactly_once(mask, eight):

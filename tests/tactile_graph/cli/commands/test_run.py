@@ -25,6 +25,7 @@ from helpers_cli import DISCS, broken_plugin, call, install
 from tactile_graph import Frame, Image, Mask, load
 from tactile_graph.cli.output.live_table import LiveTable
 from tactile_graph.engine.tables.columns import Column, columns_of
+from tactile_graph.pipeline.document import assignment
 
 pytestmark = pytest.mark.usefixtures("hand_made")
 
@@ -414,7 +415,10 @@ def test_a_text_setting_takes_what_is_no_yaml_as_it_is_typed(tmp_path, monkeypat
     assert f"--set circle.words={text}: " in call(*words, f"circle.words={text}").stderr
 
 
-@pytest.mark.parametrize("text", ["D:", "D: x", "2024", "yes"])
+@pytest.mark.parametrize(
+    "text",
+    ["D:", "D: x", "2024", "yes", "rec #2.npz", "#3.npz", "[a].npz", "[a] #2.npz", "%a", "- a"],
+)
 def test_a_path_is_taken_as_it_is_typed_whatever_yaml_makes_of_it(tmp_path, monkeypatch, text):
     seen = []
 
@@ -432,6 +436,16 @@ def test_a_path_is_taken_as_it_is_typed_whatever_yaml_makes_of_it(tmp_path, monk
     got = call(*words, f"circle.file={text}")
     assert got.exit_code == 0, got.output
     assert seen == [Path(text), Path(text)]
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("rec #2", "rec #2"), ('"rec" #2', '"rec" #2'), ('"rec #2"', "rec #2"), ("null", None)],
+)
+def test_only_quotes_and_null_are_read_as_yaml_where_a_text_or_path_is_meant(text, value):
+    for takes in ([lambda _: True], [lambda _: False, lambda _: True]):
+        assert assignment("--with", f"path={text}", *takes) == ("path", value)
+    assert assignment("--with", "path=[a, b]", *takes) == ("path", ["a", "b"])
 
 
 def test_without_a_pipeline_run_says_what_there_is():

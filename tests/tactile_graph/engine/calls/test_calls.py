@@ -19,7 +19,7 @@ from tactile_graph.engine.calls.gaps import Gaps
 from tactile_graph.engine.calls.sources import Numbering
 from tactile_graph.engine.outcomes.outcome import Failed
 from tactile_graph.errors import DataError, PipelineError, UsageError
-from tactile_graph.steps import TimeGap
+from tactile_graph.steps import Report, TimeGap
 
 
 def scaled(image: Image, *, factor: int = 2, offset: int = 0) -> int:
@@ -400,3 +400,15 @@ def test_a_stream_that_has_ended_holds_no_frames() -> None:
     del frames
     gc.collect()
     assert held() is None
+
+
+def test_a_source_whose_own_attribute_is_called_stacked_yields_its_frames() -> None:
+    def presses() -> Iterator[Frame]:
+        yield Frame.of(np.ones((2, 2)), quantity="volt")
+
+    presses.stacked = False  # type: ignore[attr-defined]
+    text = (
+        "pipeline: p\nsource: {step: presses}\nnodes: {a: {step: scaled, in: frame}}\noutputs: [a]"
+    )
+    pipeline = loads(text, "p.yaml", registry({"presses": presses, "scaled": scaled}))
+    assert len([*pipeline.frames_in_stacks(0, Report())]) == 1

@@ -83,6 +83,16 @@ def lacking(image: Image) -> list[Lacking]:
     return [Lacking()]
 
 
+class Told:
+    @property
+    def columns_shown(self) -> tuple[str, ...]:
+        return ("x_cm",)
+
+
+def odd(image: Image) -> Any:
+    return Told()
+
+
 def source() -> Iterator[Frame]:
     yield Frame.of(np.ones((2, 2)), quantity="volt")
 
@@ -91,7 +101,7 @@ STEPS = {
     f.__name__: f
     for f in (
         *(wrong, later, smaller, finer, heavier, volts, flat, objects, each, right),
-        *(numbers, lacking, source),
+        *(numbers, lacking, odd, source),
     )
 }
 
@@ -123,6 +133,7 @@ def text(step: str) -> str:
         ("flat", r"gave values of shape \(6,\), not \(rows, columns\)"),
         ("objects", "gave values of type object, not numbers"),
         ("lacking", "gave Lacking, which lacks 'y_mm' of its columns_shown; did you mean 'y_cm'"),
+        ("odd", "gave Told, which has a property as its columns_shown: it must be a tuple of"),
     ],
 )
 def test_a_broken_promise_names_node_step_plugin_and_place(
