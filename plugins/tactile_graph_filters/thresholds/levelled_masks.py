@@ -20,7 +20,7 @@ class LevelledMaskStack(MaskStack):
     masks : MaskStack
     levels : ndarray of float64, shape (n,)
         Takes ownership: it becomes read-only.
-    told : tuple of str
+    *told : str
         Of which quantity the levels are, and what they are above: the same for all.
     """
 
