@@ -49,10 +49,10 @@ def test_three_outlines_may_take_the_place_of_two_that_cover_three_objects():
     assert len(best) == 3
     assert np.abs(np.sort(best[:, 0]) - row[:, 0]).max() < 0.7
     place = (0, 1), search.on, 100.0
-    two = search.sketched(pairs[0].copy(), problem)
-    drawn = [found.count for found in search.instead(place, problem, two, True)]
+    two = search.drawn(pairs[0], problem)
+    drawn = [found.count for found in search.instead(place, two, problem, True)]
     assert 3 in drawn
-    assert 3 not in [found.count for found in search.instead(place, problem, two, False)]
+    assert 3 not in [found.count for found in search.instead(place, two, problem, False)]
 
 
 def test_the_likeliest_of_some_starts_is_the_one_of_the_most_posterior():
