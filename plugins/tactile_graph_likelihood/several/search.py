@@ -21,7 +21,8 @@ from tactile_graph_likelihood.several.ladder import (
     neighbours,
 )
 from tactile_graph_likelihood.several.scene import Configuration, area_of, joined
-from tactile_graph_likelihood.several.whose import whose_by_outlines
+from tactile_graph_likelihood.several.sides import sides_moved
+from tactile_graph_likelihood.several.whose import USUAL, whose_by_outlines
 from tactile_graph_likelihood.single.problem import Places
 
 Place = tuple[tuple[int, ...], Mask, float]
@@ -44,6 +45,10 @@ any other way."""
 
 CUT_SURPLUS = -2.0
 """The same of outlines more than the connected pieces: what is cut may be cut elsewhere."""
+
+MANY, CHANCE = 150, 0.63
+"""Touched elements beyond which chance alone leaves more, and its standard deviation over the root
+of their number."""
 
 GAIN = 0.1
 """What a move must bring."""
@@ -107,6 +112,7 @@ class Search(Ladder):
 
     def explained(self, found: Configuration, most: float = SURPLUS) -> bool:
         """Return whether outlines leave hardly more unexplained than true ones would."""
+        most += by_chance(int(np.count_nonzero(self.on)))
         return self.surplus(self.beside(found).load) <= most * self.shared
 
     def uncut(self, found: Configuration) -> bool:
@@ -171,6 +177,10 @@ class Search(Ladder):
 
     def improved(self, found: Configuration, room: int) -> Configuration | None:
         """Return better outlines, None if no move makes any."""
+        if (made := self.with_sides_moved(found)) is not found:
+            made = self.noted(made)
+            if self.rank(made) > self.rank(found) + GAIN:
+                return made
         for out, mask, left in self.places(found, room):
             beside, rest = self.beside(found, *out), found.without(*out)
             now = self.settled(joined([found.only(k) for k in out]), beside, 0)[0]
@@ -185,6 +195,19 @@ class Search(Ladder):
                     return made
         return None
 
+    def with_sides_moved(self, found: Configuration) -> Configuration:
+        """Return outlines, the sides of those of many elements in other gaps where likelier."""
+        made = found
+        if np.count_nonzero(self.on) <= MANY:
+            return made
+        own = self.owners(found)[0]
+        for k in range(found.count):
+            if np.count_nonzero(own == k) > MANY:
+                one = found.only(k)
+                moved = sides_moved(self.beside(found, k), one)
+                made = made if moved is one else made.with_one(k, moved)
+        return made
+
     def places(self, found: Configuration, room: int) -> Iterator[Place]:
         """Yield one or two outlines that may be others, what is theirs, and what is unexplained.
 
@@ -195,7 +218,8 @@ class Search(Ladder):
         if found.count < room:
             masks = [own == k for k in range(found.count)]
             left = [float(unexplained[dilated(mask)].sum()) for mask in masks]
-            some += [((k,), masks[k], left[k]) for k in range(found.count) if left[k] > SPLIT]
+            least = [split_from(int(np.count_nonzero(mask))) for mask in masks]
+            some += [((k,), masks[k], left[k]) for k in range(found.count) if left[k] > least[k]]
         for out, mask, unsaid in sorted(some, key=lambda it: -it[2]):
             key = bytes([len(out)]) + mask.tobytes()
             if mask.any() and key not in self.seen:
@@ -254,3 +278,13 @@ class Search(Ladder):
         -1 where untouched; what outlines that explain an element wholly would add, in nats.
         """
         return whose_by_outlines.call(self.problem, found.outlines)
+
+
+def by_chance(touched: int) -> float:
+    """Return what chance leaves unexplained of so many touched elements, beyond what is usual."""
+    return CHANCE * math.sqrt(touched) if touched > MANY else 0.0
+
+
+def split_from(touched: int) -> float:
+    """Return what must be left unexplained, in nats, for an outline of so many to be parted."""
+    return max(SPLIT, USUAL * touched + by_chance(touched)) if touched > MANY else SPLIT

@@ -5,7 +5,10 @@ import pytest
 
 from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Image, Rectangle
+from tactile_graph_likelihood.any_pad.observed import observed
 from tactile_graph_likelihood.several.locate_objects import LocateObjects
+from tactile_graph_likelihood.several.sides import sides_moved
+from tactile_graph_pads.pad import load_pad
 
 pytestmark = pytest.mark.slow  # the kernels alone compile for a quarter of a minute
 
@@ -49,7 +52,7 @@ def test_nothing_is_found_beside_one_large_object(seed):
     assert its.length_cm == pytest.approx(25.0, abs=0.3)
 
 
-@pytest.mark.parametrize("seed", [104, 110])
+@pytest.mark.parametrize("seed", [104, 107, 110])
 def test_what_a_strip_along_an_edge_explains_is_the_large_object_s(seed):
     found = LocateObjects()(mat_under([(EVEN_CARTON, 4.0), (CUP, 5.0)], seed))
     assert found.count == 2
@@ -67,3 +70,17 @@ def test_an_object_whose_edges_lie_in_gaps_is_one(seed):
     """All its readings are alike, so that they seem to begin just below."""
     found = LocateObjects()(mat_under([(BAR, 6.0)], seed))
     assert (found.count, found.fits) == (1, True)
+
+
+def test_a_side_in_a_wrong_gap_is_moved_to_where_it_is_likelier():
+    _, found = LocateObjects().searched(
+        observed(mat_under([(EVEN_CARTON, 4.0)], 107), load_pad("thesis"))
+    )
+    scene, its = found.parts[0].scene, found.outlines
+    wide = its.with_one(0, its)
+    wide.points[0, [0, 2]] += 0.78  # its right side in another gap
+    moved = sides_moved(scene.problem, wide)
+    before, after = (scene.settled(one, most=0)[0].log_evidence for one in (wide, moved))
+    assert after > before + 10.0
+    assert moved.points[0, 2] < 13.0
+    assert sides_moved(scene.problem, its) is its
