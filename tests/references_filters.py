@@ -30,15 +30,19 @@ def to_volts(
 
 def measure(
     values: NDArray[np.float64], usable: NDArray[np.bool_], above: float
-) -> tuple[float, float, float, float, float]:
-    """Return number, sum, maximum and moments (x, y, in cells) of the usable cells above."""
+) -> tuple[float, float, float, float, float, float]:
+    """Return number, sum, maximum and moments (x, y, in cells) of the usable cells above.
+
+    Last comes the sum of those not above that read less than zero.
+    """
     on = usable & ~(values <= above)  # NaN stays in, to be found out by its sum
     load = values[on]
     y, x = np.nonzero(on)
     peak = float(load.max()) if load.size else 0.0
     # Infinity, and sums too large, to be found out too.
     with np.errstate(invalid="ignore", over="ignore"):
-        return float(load.size), float(load.sum()), peak, float(x @ load), float(y @ load)
+        below = float(values[usable & (values <= above) & (values < 0.0)].sum())
+        return float(load.size), float(load.sum()), peak, float(x @ load), float(y @ load), below
 
 
 def floored(grams: NDArray[np.float64], floor_g: float) -> bool:

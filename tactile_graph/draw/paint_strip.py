@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
@@ -38,7 +39,8 @@ DASHES = (4.0, 2.5)
 HEAT = "viridis"
 FILLED = 0.3
 """How much of an area's colour covers what lies beneath."""
-MOST_NOTES = 8
+MOST_NOTES, MOST_ALIKE = 8, 2
+"""Lines of notes, and objects beyond which their notes would cover them, and none knows whose."""
 LONGEST_NOTE = 28
 LINE_IN, LETTERS_AN_INCH = 0.125, 15.0
 """Of notes: the height of a line, and how many letters surely stand side by side."""
@@ -72,7 +74,7 @@ class Pen:
             return
         records = display_list(value)
         self.paint(records)
-        notes = [self._told(r) for r in records if isinstance(r, Note)]
+        notes = [self._told(r) for r in told_once(records)]
         if self._lies_outside():
             notes.append("outside the picture")
         if notes:
@@ -225,6 +227,13 @@ class Pen:
             0.5, 0.5, "\n".join(lines), transform=self.axes.transAxes, ha="center", va="center",
             fontsize=6.5, color="#8e2323" if failed else "#555555", parse_math=False,
         )  # fmt: skip
+
+
+def told_once(records: Iterable[Record]) -> list[Note]:
+    """Return the notes but for those that each of more than a few objects has."""
+    notes = [r for r in records if isinstance(r, Note)]
+    times = Counter(note.name for note in notes)
+    return [note for note in notes if times[note.name] <= MOST_ALIKE]
 
 
 def _colour(record: Area | Label) -> str:

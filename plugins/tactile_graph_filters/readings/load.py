@@ -10,16 +10,17 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph.errors import Degenerate
-from tactile_graph.wires import Image
+from tactile_graph.steps.rules import require_same_shape
+from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.nan import refuse_unbounded
 from tactile_graph_filters.thresholds.noise_level import noise_level
 
 NEWTON_PER_GRAM = 9.80665e-3
 """Weight of one gram under standard gravity."""
 NEWTON_PER_KILOPASCAL_CM2 = 0.1
-MANY_CELLS, LARGE_SHARE = 0.25, 0.1
-"""Of all cells so many must count, and those that do not stand out make up so much of the total,
-before it is told."""
+MANY_CELLS, LARGE_SHARE, LARGE_AREA = 0.25, 0.1, 0.5
+"""Of all cells so many must count, and those that do not stand out make up so much of the total, or
+of the area where noise lies around zero, before it is told."""
 
 
 class Load(NamedTuple):
@@ -48,8 +49,11 @@ Load.field_quantities = {"force_n": ("gram", "kilopascal")}  # type: ignore[attr
 
 @compiled_later
 def measure(values, usable, above):  # type: ignore[no-untyped-def]
-    """Return number, sum, maximum and moments (x, y, in cells) of the usable cells above."""
-    n = total = peak = moment_x = moment_y = 0.0
+    """Return number, sum, maximum and moments (x, y, in cells) of the usable cells above.
+
+    Last comes the sum of those not above that read less than zero.
+    """
+    n = total = peak = moment_x = moment_y = below = 0.0
     for i in range(values.shape[0]):
         for j in range(values.shape[1]):
             value = values[i, j]
@@ -59,25 +63,36 @@ def measure(values, usable, above):  # type: ignore[no-untyped-def]
                 total += value
                 moment_x += j * value
                 moment_y += i * value
-    return n, total, peak, moment_x, moment_y
+            elif usable[i, j] and value < 0.0:
+                below += value
+    return n, total, peak, moment_x, moment_y, below
 
 
 def counts_cells_at_rest(image: Image, value: Load) -> str:
-    """Return what to say where much of the total is of cells that do not stand out; else empty."""
+    """Return what to say where much of total or area is of cells that do not stand out; or empty.
+
+    Of an area only where cells read less than zero: then noise lies around it, and is no load.
+    """
     n_counted = value.contact_area_cm2 / image.cell_area_cm2
     if value.total <= 0.0 or n_counted <= MANY_CELLS * image.values.size:
         return ""
     level = noise_level(image)
-    on = image.values >= level
-    if image.valid is not None:
-        on &= image.valid
-    share = 1.0 - float(image.values[on].sum()) / value.total
-    if share <= LARGE_SHARE or not on.any():  # a load on the whole pad leaves none to tell it from
+    valid = True if image.valid is None else image.valid
+    on = (image.values >= level) & valid
+    if not on.any():  # a load on the whole pad leaves none to tell it from
         return ""
+    share = 1.0 - float(image.values[on].sum()) / value.total
+    what, so = "total", "and draws the centre along; if nothing lies on them, the step 'tare' "
+    so += "takes off what they read at rest, and 'above' leaves them out"
+    if share <= LARGE_SHARE:
+        share = 1.0 - np.count_nonzero(on) / n_counted
+        what, so = "contact area", "as noise around zero does; 'above' leaves them out, or a "
+        so += "footprint at the port 'mask'"
+        if share <= LARGE_AREA or not (valid & (image.values < 0.0)).any():
+            return ""
     return (
-        f"{share:.0%} of the total is of cells that do not stand out of the others, below "
-        f"{level:.3g} {image.unit}, and draws the centre along; if nothing lies on them, the step "
-        "'tare' takes off what they read at rest, and 'above' leaves them out"
+        f"{share:.0%} of the {what} is of cells that do not stand out of the others, below "
+        f"{level:.3g} {image.unit}, {so}"
     )
 
 
@@ -95,6 +110,10 @@ class LoadOf:
     in kilopascals it is pressure times cell area (pitch by pitch), summed. The centre is the
     mean of the cell centres weighted by the readings. All cells count, as in the sums that makers
     of pads print: what an untouched cell reads is part of them, of which it is told.
+
+    Half of the cells at rest read more than zero where noise lies around it. With a footprint, area
+    and centre are then those of its cells, and the total is that of all cells, those below zero,
+    too, so that noise adds nothing to it. Where none is below zero a footprint changes nothing.
     """
 
     stateless = True
@@ -104,24 +123,44 @@ class LoadOf:
         self._above = above
         self._all: dict[tuple[int, int], NDArray[Any]] = {}
 
-    def __call__(self, image: Image) -> Load:
+    def __call__(self, image: Image, mask: Mask | None = None) -> Load:
         """Return the load of the image.
+
+        Parameters
+        ----------
+        image : Image
+        mask : Mask, optional
+            The footprint, on the same grid.
 
         Raises
         ------
+        RuleError
+            If image and mask differ in shape.
         DataError
             If a valid cell holds NaN or infinity.
         Degenerate
             If no cell is valid, or the load, or its moment, is too large for a number.
         """
         values = np.ascontiguousarray(image.values, np.float64)
-        n, total, peak, moment_x, moment_y = measure(values, self._usable(image), self._above)
+        usable = self._usable(image)
+        n, total, peak, moment_x, moment_y, below = measure(values, usable, self._above)
+        loaded, weight = total > 0.0, total
+        if mask is not None:
+            on = mask.values
+            if on.shape != values.shape:
+                require_same_shape(image=image, mask=mask)
+            if below < 0.0 and self._above <= 0.0:
+                total += below
+                on = on if image.valid is None else _kept(on & usable)
+                n, its, _, its_x, its_y, _ = measure(values, on, self._above)
+                if its > 0.0:
+                    weight, moment_x, moment_y = its, its_x, its_y
         if not math.isfinite(total + moment_x + moment_y):
             refuse_unbounded(image, "the load, or its moment")
-        if total > 0.0:
+        if loaded:
             (x, y), (pitch_x, pitch_y) = image.origin_cm, image.pitch_cm
-            x_cm: float | None = x + (moment_x / total + 0.5) * pitch_x
-            y_cm: float | None = y + (moment_y / total + 0.5) * pitch_y
+            x_cm: float | None = x + (moment_x / weight + 0.5) * pitch_x
+            y_cm: float | None = y + (moment_y / weight + 0.5) * pitch_y
         else:
             x_cm = y_cm = None
         force_n = force_of(total, image)
@@ -129,16 +168,20 @@ class LoadOf:
         if left_out == image.values.size > 0:
             raise Degenerate("no cell of the image is valid, so its load is not known")
         area_cm2 = n * image.cell_area_cm2
-        return Load(total > 0.0, total, force_n, area_cm2, peak, x_cm, y_cm, left_out)
+        return Load(loaded, total, force_n, area_cm2, peak, x_cm, y_cm, left_out)
 
     def _usable(self, image: Image) -> NDArray[Any]:
         if image.valid is not None:
             return image.valid
         if image.shape not in self._all:
-            everywhere = np.ones(image.shape, np.bool_)
-            everywhere.setflags(write=False)  # as an image's own are: one compiled kernel for both
-            self._all = {image.shape: everywhere}
+            self._all = {image.shape: _kept(np.ones(image.shape, np.bool_))}
         return self._all[image.shape]
+
+
+def _kept(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return cells that nobody writes, as an image's own are: one compiled kernel for all."""
+    cells.setflags(write=False)
+    return cells
 
 
 def force_of(total: float, image: Image) -> float | None:

@@ -61,6 +61,11 @@ FEW_ELEMENTS = 2.3
 """Factor of an outline's variance: its gains and voids are those of few elements, not the noise's
 own."""
 
+BELOW = 1.0
+"""By how much the logarithm of the least load that shows lies below that of the median touched
+element, at least: where edges lie in gaps all readings are alike, and seem to begin just below
+them; no outline presses less than twice the least."""
+
 ABSORBED = 2.0
 """Over an outline's number of elements: by how much its fit lowers neighbours' correlation."""
 
@@ -85,10 +90,11 @@ class LocateObjects:
     What counts as touched follows from the noise in the frame itself. Foam is undone where it is
     seen. Gains and voids are those of what the outlines cover whole, all objects together, beside
     what the pad says; where they differ much the search goes on from there. Readings at the end of
-    their range count as loads. ``fits`` is False, too, where three elements side by side are
-    touched and no object is found there, or where rows and columns of several seem to make ghosts,
-    as on a matrix without isolation; and more objects than ``most`` that lie apart lower
-    ``count_probability``. The order of the shapes means nothing: `track` keeps who is who.
+    their range count as loads. ``fits`` is False where it is for any of the shapes; too, where
+    three elements side by side are touched and no object is found there, or where rows and columns
+    of several seem to make ghosts, as on a matrix without isolation; and more objects than ``most``
+    that lie apart lower ``count_probability``. The order of the shapes means nothing: `track` keeps
+    who is who.
     """
 
     stateless = True
@@ -158,6 +164,7 @@ class LocateObjects:
             and not overlooked(problem, found)
             and not vague
             and not readings.ghosts
+            and all(shape.fits for shape in shapes)
             and not enclose(found),
         )
 
@@ -174,7 +181,8 @@ class LocateObjects:
         if readings.through_foam is not None:
             told = replace(told, foam_cm=0.0)
         if least_log is not None:
-            told = replace(told, least=math.exp(least_log))
+            most = float(np.median(readings.logs[readings.shows])) - BELOW
+            told = replace(told, least=math.exp(min(least_log, most)))
         problem = self.expected.problem(readings, told.vector(pitch))
         found = likeliest(problem, self.expected)
         noise, shared = said_by(problem, found, told)

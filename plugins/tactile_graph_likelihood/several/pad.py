@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Shape
@@ -33,8 +34,9 @@ LEAST_ADJACENT = 3
 """Touched elements side by side that may be an object where there are larger ones, too: strays are
 single ones."""
 
-MARGIN = 2
-"""Cells around a part that are looked at with it."""
+MARGIN, OF_EXTENT = 2, 4
+"""Cells around a part that are looked at with it, and of how many cells of its own another is: an
+outline that grows beyond what is looked at would not be held by the bare cells there."""
 
 TEMPER = 2.0
 """How many times less evidence between kinds and other outlines is worth: none of them is quite
@@ -205,11 +207,9 @@ def parts_of(problem: JointProblem, expected: Expected, shared: float) -> list[S
     found = []
     for k in large:
         own = labels == k + 1
-        rows, columns = np.flatnonzero(own.any(axis=1)), np.flatnonzero(own.any(axis=0))
-        top, left = max(int(rows[0]) - MARGIN, 0), max(int(columns[0]) - MARGIN, 0)
-        box = slice(top, int(rows[-1]) + MARGIN + 1), slice(left, int(columns[-1]) + MARGIN + 1)
+        box = around(own.any(axis=1)), around(own.any(axis=0))
         grid = problem.grid.copy()
-        grid[:2] += grid[2] * np.array([left, top])
+        grid[:2] += grid[2] * np.array([box[1].start, box[0].start])
         states = np.where(on & ~own, UNKNOWN, problem.states)[box].astype(np.uint8)
         bare = np.zeros(states.shape)
         part = problem._replace(
@@ -217,6 +217,14 @@ def parts_of(problem: JointProblem, expected: Expected, shared: float) -> list[S
         )
         found.append(Search(part, expected.kinds, expected.more, shared))
     return found
+
+
+def around(lines: NDArray[np.bool_]) -> slice:
+    """Return the rows or columns that are looked at for a part that has cells in some of them."""
+    own = np.flatnonzero(lines)
+    first, last = int(own[0]), int(own[-1])
+    margin = max(MARGIN, (last + 1 - first) // OF_EXTENT)
+    return slice(max(first - margin, 0), last + margin + 1)
 
 
 def likeliest(

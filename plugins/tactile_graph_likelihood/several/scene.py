@@ -109,13 +109,20 @@ class Scene:
         return laid(before or self.problem, found.without(*left_out))
 
     def settled(
-        self, found: Configuration, beside: JointProblem | None = None, most: int = 15
+        self,
+        found: Configuration,
+        beside: JointProblem | None = None,
+        most: int = 15,
+        soft: int = 0,
     ) -> tuple[Configuration, Values]:
-        """Return outlines brought to their joint mode beside others, and the information there."""
+        """Return outlines brought to their joint mode beside others, and the information there.
+
+        At first the problem is softened for ``soft`` rounds, if any.
+        """
         points = found.points.copy()
         matrix = np.empty((found.count * WIDTH, found.count * WIDTH))
         outlines = Outlines(found.kinds, found.corners, points)
-        log = settle.call(beside or self.problem, outlines, 0, most, ENOUGH, matrix)
+        log = settle.call(beside or self.problem, outlines, soft, most, ENOUGH, matrix)
         return Configuration(found.kinds, found.corners, points, log), matrix
 
     def worth(self, found: Configuration) -> float:

@@ -12,7 +12,7 @@ from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.alike import alikeness_of
 from tactile_graph_likelihood.several.joint_posterior import JointProblem
-from tactile_graph_likelihood.several.kinds import draw
+from tactile_graph_likelihood.several.kinds import SOFT, draw
 from tactile_graph_likelihood.several.ladder import (
     Ladder,
     Mask,
@@ -20,8 +20,9 @@ from tactile_graph_likelihood.several.ladder import (
     dilated,
     neighbours,
 )
-from tactile_graph_likelihood.several.scene import Configuration, joined
-from tactile_graph_likelihood.several.whose import whose_by_outlines
+from tactile_graph_likelihood.several.scene import Configuration, area_of, joined
+from tactile_graph_likelihood.several.sides import sides_moved
+from tactile_graph_likelihood.several.whose import USUAL, whose_by_outlines
 from tactile_graph_likelihood.single.problem import Places
 
 Place = tuple[tuple[int, ...], Mask, float]
@@ -45,6 +46,10 @@ any other way."""
 CUT_SURPLUS = -2.0
 """The same of outlines more than the connected pieces: what is cut may be cut elsewhere."""
 
+MANY, CHANCE = 150, 0.63
+"""Touched elements beyond which chance alone leaves more, and its standard deviation over the root
+of their number."""
+
 GAIN = 0.1
 """What a move must bring."""
 
@@ -61,6 +66,14 @@ NEARLY = 4.0
 
 CLOSE = 15.0
 """How much less evidence outlines may have than what they replace, for other kinds to be tried."""
+
+MUCH_LARGER = 4.0
+"""How many times as large an outline is as its neighbour from which on it is tried alone, too: of
+many elements a sketch is too rough to tell that it explains those of a strip along its edge."""
+
+LEAST_OWN = 3
+"""Touched elements that belong to an outline, where there are others; what it covers in less may be
+strays, or what a neighbour's edge misses."""
 
 
 class Search(Ladder):
@@ -99,6 +112,7 @@ class Search(Ladder):
 
     def explained(self, found: Configuration, most: float = SURPLUS) -> bool:
         """Return whether outlines leave hardly more unexplained than true ones would."""
+        most += by_chance(int(np.count_nonzero(self.on)))
         return self.surplus(self.beside(found).load) <= most * self.shared
 
     def uncut(self, found: Configuration) -> bool:
@@ -114,10 +128,18 @@ class Search(Ladder):
 
     def begun(self, sketches: Sketches) -> Configuration:
         """Return outlines like sketches, without those that no touched element belongs to."""
-        found = self.drawn(sketches.points, self.problem)
+        return self.without_idle(self.drawn(sketches.points, self.problem), 1)
+
+    def without_idle(self, found: Configuration, least: int = LEAST_OWN) -> Configuration:
+        """Return outlines but for those to which fewer touched elements belong; the best remains.
+
+        No move comes upon those to which none belongs, and beyond the part's elements they cost
+        next to nothing.
+        """
         own = self.owners(found)[0]
-        idle = [k for k in range(found.count) if not np.any(own == k)]
-        return found.without(*idle) if 0 < len(idle) < found.count else found
+        counts = np.bincount(own[own >= 0], minlength=found.count)
+        idle = np.flatnonzero(counts < min(least, counts.max()))
+        return found.without(*idle) if len(idle) else found
 
     def far_from(self, x_cm: float, y_cm: float) -> float:
         """Return the distance of a place from the nearest touched element, in cm."""
@@ -140,6 +162,8 @@ class Search(Ladder):
     def noted(self, found: Configuration) -> Configuration:
         """Return outlines brought to their joint mode; they are kept if their number's best."""
         found = self.settled(found)[0]
+        while (fewer := self.without_idle(found)) is not found:
+            found = self.settled(fewer)[0]
         self.every.append(found)
         self.weighed(found.count, self.of_number(found))
         best = self.best.get(found.count)
@@ -153,11 +177,14 @@ class Search(Ladder):
 
     def improved(self, found: Configuration, room: int) -> Configuration | None:
         """Return better outlines, None if no move makes any."""
+        if (made := self.with_sides_moved(found)) is not found:
+            made = self.noted(made)
+            if self.rank(made) > self.rank(found) + GAIN:
+                return made
         for out, mask, left in self.places(found, room):
             beside, rest = self.beside(found, *out), found.without(*out)
             now = self.settled(joined([found.only(k) for k in out]), beside, 0)[0]
-            place, before = (out, mask, left), self.worth(now)
-            for new in self.instead(place, beside, before, found.count < room):
+            for new in self.instead((out, mask, left), now, beside, found.count < room):
                 log = found.log_evidence + new.log_evidence - now.log_evidence
                 made = joined([rest, new], log)
                 self.weighed(made.count, self.of_number(made))
@@ -167,6 +194,19 @@ class Search(Ladder):
                 if self.rank(made) > self.rank(found) + GAIN:
                     return made
         return None
+
+    def with_sides_moved(self, found: Configuration) -> Configuration:
+        """Return outlines, the sides of those of many elements in other gaps where likelier."""
+        made = found
+        if np.count_nonzero(self.on) <= MANY:
+            return made
+        own = self.owners(found)[0]
+        for k in range(found.count):
+            if np.count_nonzero(own == k) > MANY:
+                one = found.only(k)
+                moved = sides_moved(self.beside(found, k), one)
+                made = made if moved is one else made.with_one(k, moved)
+        return made
 
     def places(self, found: Configuration, room: int) -> Iterator[Place]:
         """Yield one or two outlines that may be others, what is theirs, and what is unexplained.
@@ -178,7 +218,8 @@ class Search(Ladder):
         if found.count < room:
             masks = [own == k for k in range(found.count)]
             left = [float(unexplained[dilated(mask)].sum()) for mask in masks]
-            some += [((k,), masks[k], left[k]) for k in range(found.count) if left[k] > SPLIT]
+            least = [split_from(int(np.count_nonzero(mask))) for mask in masks]
+            some += [((k,), masks[k], left[k]) for k in range(found.count) if left[k] > least[k]]
         for out, mask, unsaid in sorted(some, key=lambda it: -it[2]):
             key = bytes([len(out)]) + mask.tobytes()
             if mask.any() and key not in self.seen:
@@ -186,14 +227,17 @@ class Search(Ladder):
                 yield out, mask, unsaid
 
     def instead(
-        self, place: Place, beside: JointProblem, before: float, more: bool
+        self, place: Place, now: Configuration, beside: JointProblem, more: bool
     ) -> Iterator[Configuration]:
         """Yield what may explain a place beside others: one outline, two, or three for two.
 
-        ``before`` is what lies there worth, and ``more`` whether there may be more outlines.
+        ``now`` is what lies there, and ``more`` whether there may be more outlines.
         """
-        out, mask, unexplained = place
+        (out, mask, unexplained), before = place, self.worth(now)
         if len(out) > 1:
+            areas = [area_of(now, k) for k in range(2)]
+            if max(areas) > MUCH_LARGER * min(areas):
+                yield self.settled(now.only(int(np.argmax(areas))), beside, soft=SOFT)[0]
             one = self.sketch_of(mask)
             if self.sketched(one, beside) > before - JOINED:
                 yield self.drawn(one, beside, before)
@@ -234,3 +278,13 @@ class Search(Ladder):
         -1 where untouched; what outlines that explain an element wholly would add, in nats.
         """
         return whose_by_outlines.call(self.problem, found.outlines)
+
+
+def by_chance(touched: int) -> float:
+    """Return what chance leaves unexplained of so many touched elements, beyond what is usual."""
+    return CHANCE * math.sqrt(touched) if touched > MANY else 0.0
+
+
+def split_from(touched: int) -> float:
+    """Return what must be left unexplained, in nats, for an outline of so many to be parted."""
+    return max(SPLIT, USUAL * touched + by_chance(touched)) if touched > MANY else SPLIT

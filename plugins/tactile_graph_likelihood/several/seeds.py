@@ -16,8 +16,9 @@ from tactile_graph_likelihood.several.partings import across, spread, summed
 
 Mask = NDArray[np.bool_]
 
-EMPTIER = 3.0
-"""By how much larger, in elements, a set's ellipse is than its halves' together where it is cut."""
+EMPTIER, OF_MANY = 3.0, 0.01
+"""By how much larger, in elements and over their number, a set's ellipse is than its halves'
+together where it is cut."""
 
 
 def seeds(pieces: list[Mask], most: int, least: int) -> list[Mask]:
@@ -35,7 +36,7 @@ def seeds(pieces: list[Mask], most: int, least: int) -> list[Mask]:
     while len(masks) < most:
         gains = [gain for gain, _ in cuts]
         k = int(np.argmax(gains))
-        if gains[k] < EMPTIER:
+        if gains[k] < max(EMPTIER, OF_MANY * np.count_nonzero(masks[k])):
             break
         one = cuts[k][1]
         halves = [one, masks[k] & ~one]

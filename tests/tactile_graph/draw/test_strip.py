@@ -30,7 +30,8 @@ from helpers_draw import (
 from tactile_graph import Ellipse, Image, Points, Polygon, Rectangle, loads
 from tactile_graph.api.result import Result
 from tactile_graph.draw.colours import FAILED
-from tactile_graph.draw.display import cell_edges
+from tactile_graph.draw.display import Note, cell_edges
+from tactile_graph.draw.paint_strip import told_once
 from tactile_graph.draw.strip import (
     figure_bytes,
     figure_png,
@@ -310,6 +311,12 @@ def test_the_numbers_of_a_low_wide_pad_stay_in_its_picture() -> None:
     box, within = note.get_window_extent(), axes.get_window_extent()
     assert within.y0 <= box.y0 < box.y1 <= within.y1
     assert within.x0 <= box.x0 < box.x1 <= within.x1
+
+
+def test_what_each_of_many_objects_says_of_itself_does_not_cover_them() -> None:
+    its, count = [Note("kind", "disc"), Note("confidence", 0.6)], Note("count", 3)
+    assert told_once([count, *its * 2]) == [count, *its * 2]
+    assert told_once([count, *its * 3]) == [count]
 
 
 def test_of_many_frames_some_are_shown_spread_evenly_and_the_strip_says_so() -> None:

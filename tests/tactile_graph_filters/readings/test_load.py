@@ -6,7 +6,7 @@ import pytest
 
 import references_filters as references
 from helpers_filters import ORIGIN, PITCH, image_of, random_mask
-from tactile_graph.errors import DataError, Degenerate
+from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Image
 from tactile_graph_filters.readings.force import Force
 from tactile_graph_filters.readings.load import Load, LoadOf, counts_cells_at_rest, measure
@@ -93,7 +93,7 @@ def pressed(rest: float, noise: float = 1e-3) -> Image:
 @pytest.mark.parametrize(
     ("image", "words"),
     [
-        (pressed(0.0), ""),
+        (pressed(0.0), "8.% of the contact area is of cells that do not stand out of the others"),
         (
             pressed(0.1),
             "58% of the total is of cells that do not stand out of the others, below 0.",
@@ -109,6 +109,39 @@ def test_a_total_of_what_untouched_cells_read_says_so(image, words):
     told = counts_cells_at_rest(image, LoadOf()(image))
     assert bool(told) == bool(words)
     assert re.match(words, told)
+
+
+def test_noise_around_zero_adds_nothing_to_a_footprint_s_load():
+    image = pressed(0.0, noise=0.05)
+    footprint = image.mask(image.values > 0.5)
+    found, alone = LoadOf()(image, footprint), LoadOf()(image)
+    cell_cm2 = PITCH[0] * PITCH[1]
+    assert found.contact_area_cm2 == pytest.approx(16 * cell_cm2)
+    assert alone.contact_area_cm2 > 100 * cell_cm2
+    assert found.total == pytest.approx(image.values.sum())
+    assert alone.total == pytest.approx(image.values[image.values > 0].sum())
+    assert found.x_cm == pytest.approx(ORIGIN[0] + 6.0 * PITCH[0], abs=0.05)
+    assert (found.loaded, found.peak) == (alone.loaded, alone.peak)
+    assert counts_cells_at_rest(image, found) == ""
+
+
+def test_a_footprint_changes_nothing_where_no_cell_reads_less_than_zero():
+    """Makers of pads print the sum and the area of all cells that read something."""
+    image = image_of([[0.0, 0.1, 3.0], [0.2, 0.0, 5.0]])
+    assert LoadOf()(image, image.mask(image.values > 1.0)) == LoadOf()(image)
+
+
+def test_without_a_footprint_s_cell_the_area_is_0():
+    image = image_of([[-1.0, 2.0], [-2.0, -1.5]])
+    found = LoadOf()(image, image.mask(image.values > 9.0))
+    assert (found.total, found.contact_area_cm2) == (-2.5, 0.0)
+    assert found.x_cm == pytest.approx(ORIGIN[0] + 1.5 * PITCH[0])
+
+
+def test_a_footprint_of_another_shape_is_refused():
+    image = image_of(np.eye(3))
+    with pytest.raises(RuleError, match="mask"):
+        LoadOf()(image, image_of(np.eye(2)).mask(np.eye(2) > 0.5))
 
 
 def test_nothing_is_said_where_such_cells_are_left_out():

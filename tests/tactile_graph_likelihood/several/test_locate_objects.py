@@ -93,7 +93,17 @@ def test_frames_whose_outlines_are_vague_are_flagged_and_others_are_not():
     vague = [np.mean([its.centre_std_cm for its in f.shapes]) > VAGUE * 1.3 for f in found]
     assert 0 < sum(vague) < len(found)
     for its, flagged in zip(found, vague, strict=True):
+        flagged = flagged or not all(shape.fits for shape in its.shapes)
         assert its.fits != (flagged or its.count_probability <= 0.5 or its.surprise <= -6.0)
+
+
+def test_an_object_that_does_not_fit_is_not_made_up_for_by_those_that_do():
+    """Of four where three lie one is vague by itself, but not the mean of all."""
+    found = LocateObjects()(frames_of("gains 0.9", 3, True, Asked(5, 5))[4].image)
+    assert np.mean([its.centre_std_cm for its in found.shapes]) < VAGUE * 1.3
+    assert found.count_probability > 0.5
+    assert [its.fits for its in found.shapes].count(False) == 1
+    assert not found.fits
 
 
 def discs(seed, side, *lying):

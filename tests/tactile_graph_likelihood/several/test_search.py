@@ -8,7 +8,8 @@ from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE
 from tactile_graph_likelihood.several.joint_posterior import Outlines, gain, log_rest_of
 from tactile_graph_likelihood.several.maximise_jointly import likeliest_of
 from tactile_graph_likelihood.several.scene import Configuration, laid
-from tactile_graph_likelihood.several.search import Search
+from tactile_graph_likelihood.several.search import SPLIT, SURPLUS, Search, by_chance, split_from
+from tactile_graph_likelihood.several.whose import ODD, USUAL
 from tactile_graph_likelihood.single.element_terms import OFF, ON
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")
@@ -49,10 +50,10 @@ def test_three_outlines_may_take_the_place_of_two_that_cover_three_objects():
     assert len(best) == 3
     assert np.abs(np.sort(best[:, 0]) - row[:, 0]).max() < 0.7
     place = (0, 1), search.on, 100.0
-    two = search.sketched(pairs[0].copy(), problem)
-    drawn = [found.count for found in search.instead(place, problem, two, True)]
+    two = search.drawn(pairs[0], problem)
+    drawn = [found.count for found in search.instead(place, two, problem, True)]
     assert 3 in drawn
-    assert 3 not in [found.count for found in search.instead(place, problem, two, False)]
+    assert 3 not in [found.count for found in search.instead(place, two, problem, False)]
 
 
 def test_the_likeliest_of_some_starts_is_the_one_of_the_most_posterior():
@@ -108,3 +109,12 @@ def test_of_two_numbers_alike_likely_outlines_that_are_alike_are_likelier():
     unlike = Configuration(np.full(2, DISC), np.zeros(2, np.int64), points, 0.0)
     assert search.worth(alike) == search.worth(unlike)
     assert search.rank(alike) > search.rank(unlike) + 3.0
+
+
+def test_what_chance_leaves_unexplained_of_many_elements_starts_no_search():
+    """Without it every second carton of 4000 cells would be parted, a second each."""
+    left = np.random.default_rng(0).standard_normal((200, 4000)) ** 2 / 2.0
+    left = np.where(left > ODD, left, 0.0).sum(axis=1)
+    assert (left > split_from(4000)).mean() < 0.25
+    assert (left - 4000 * USUAL > SURPLUS + by_chance(4000)).mean() < 0.25
+    assert (split_from(100), by_chance(100)) == (SPLIT, 0.0)

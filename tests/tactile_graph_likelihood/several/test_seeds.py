@@ -32,6 +32,15 @@ def test_a_convex_piece_is_left_whole(mask):
     assert (found[0] == mask).all()
 
 
+@pytest.mark.slow
+def test_a_carton_of_thousands_of_elements_is_left_whole_at_any_angle():
+    rows, columns = np.mgrid[0:128, 0:128] - 63.5
+    for angle in np.deg2rad([3.0, 10.0, 20.0, 35.0]):
+        along = columns * np.cos(angle) + rows * np.sin(angle)
+        across = rows * np.cos(angle) - columns * np.sin(angle)
+        assert len(seeds([(abs(along) < 45) & (abs(across) < 22.5)], 6, 4)) == 1
+
+
 def test_there_are_no_more_than_asked_for_unless_there_are_more_pieces():
     row = disc(4, 4) | disc(10, 4) | disc(16, 4)
     assert len(seeds([row], 2, 4)) == 2
