@@ -48,11 +48,6 @@ class Span:
         """How many frames it can be; None if there is no end."""
         return None if self.stop is None else self.stop - self.start
 
-    @property
-    def is_all(self) -> bool:
-        """Whether it is every frame of a source."""
-        return self.start == 0 and self.stop is None
-
     def of(self, frames: Iterator[Frame]) -> Iterator[Frame]:
         """Return those frames."""
         return islice(frames, self.start, self.stop)

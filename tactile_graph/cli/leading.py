@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def led(
     frames: Taken,
     span: Span,
-    plan: Plan,
+    plan: Plan | None,
     run: Callable[[Frame], object],
     block: Callable[[FrameStack], object] | None = None,
 ) -> Iterator[Frame | FrameStack]:
@@ -30,14 +30,14 @@ def led(
     frames : Taken
         All that the source gives.
     span : Span
-    plan : Plan
-        What is run.
+    plan : Plan or None
+        What is run; None where no state is to see them.
     run, block : callable
         Run a frame, or a stack of frames if the source was asked for stacks, through the steps
         that keep state, and note nothing of it.
     """
     before = frames.next(span.start)
-    if _leads(span.start, plan):
+    if plan is not None and _leads(span.start, plan):
         _lead(before, span.start, run, block)
     else:
         for _ in before:
@@ -45,22 +45,27 @@ def led(
     yield from frames.next(span.most)
 
 
+def led_one_by_one(
+    frames: Iterator[Frame], span: Span, plan: Plan, run: Callable[[Frame], object]
+) -> Iterator[Frame]:
+    """Yield what `led` does of a source that gives no stacks."""
+    from tactile_graph.engine.blocks.gathering import Taken, flat
+
+    return flat(led(Taken(frames), span, plan, run))
+
+
 def _leads(start: int, plan: Plan) -> bool:
     """Return whether steps are to see the frames before those asked for; say what is done."""
-    from tactile_graph.cli.terminal import console
+    from tactile_graph.cli.terminal import remark
 
     keeping = plan.keeping
     if not start or not keeping:
         return False
-
-    def say(text: str) -> None:
-        console(stderr=True).print(text, style="yellow", soft_wrap=True)
-
     sinks = [i.name for i in plan.nodes if i.node is not None and i.node.is_sink]
     if sinks:  # they would write what is not asked for
-        say(f"state begins anew at frame {start} ({one_of(keeping)}): {sinks[0]} writes frames")
+        remark(f"state begins anew at frame {start} ({one_of(keeping)}): {sinks[0]} writes frames")
         return False
-    say(f"frames before {start} are run first, for state kept by {one_of(keeping)}")
+    remark(f"frames before {start} are run first, for state kept by {one_of(keeping)}")
     return True
 
 

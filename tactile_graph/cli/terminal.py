@@ -48,3 +48,8 @@ def console(stderr: bool = False) -> Console:
     if not made.is_terminal and "COLUMNS" not in os.environ:
         made.width = WIDE  # a table cut to 80 columns is of no use to grep
     return made
+
+
+def remark(text: str) -> None:
+    """Tell people something beside the results, on stderr."""
+    console(stderr=True).print(text, style="yellow", soft_wrap=True)

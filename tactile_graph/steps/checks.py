@@ -180,35 +180,41 @@ def _output(signature: Signature) -> Iterator[str]:
 def _absent_column(kind: Any) -> str:
     """Return which field a dataclass says tables show and has not; of others only values tell."""
     of: Any = get_origin(kind) or kind
-    if odd := odd_columns(of):
-        return f"its answer {type_name(of)} {odd}"
-    if not dataclasses.is_dataclass(of) or hasattr(of, "__getattr__"):
-        return ""
-    there = [*dir(of), *(f.name for f in dataclasses.fields(of))]
-    for name in getattr(of, "columns_shown", ()):
-        if name not in there:
-            hint = did_you_mean(name, there)
-            return f"its answer {type_name(of)} lacks {name!r} of its columns_shown{hint}"
-    return ""
+    there = None
+    if dataclasses.is_dataclass(of) and not hasattr(of, "__getattr__"):
+        there = [*dir(of), *(f.name for f in dataclasses.fields(of))]
+    odd = odd_columns(of, there)
+    return f"its answer {type_name(of)} {odd}" if odd else ""
 
 
-def odd_columns(kind: Any) -> str:
-    """Return what a type has in place of the names that tables show of it; "" where it has them.
+def odd_columns(
+    kind: Any, there: Collection[str] | None, has: Callable[[str], bool] = lambda _: False
+) -> str:
+    """Return what is wrong with the names that tables show of a type; "" where nothing is.
 
     Parameters
     ----------
     kind : type
         Of a value that a step gives.
+    there : collection of str or None
+        What such a value has; None where only the value tells.
+    has : callable
+        Whether it has a name that is not among these.
 
     Returns
     -------
     str
     """
     shown = getattr(kind, "columns_shown", ())
-    if isinstance(shown, Collection) and not isinstance(shown, str):
+    if not isinstance(shown, Collection) or isinstance(shown, str):
+        got = type(shown).__name__
+        return f"has a {got} as its columns_shown: it must be a tuple of names, the class's own"
+    if there is None:
         return ""
-    got = type(shown).__name__
-    return f"has a {got} as its columns_shown: it must be a tuple of names, the class's own"
+    absent = next((name for name in shown if name not in there and not has(name)), None)
+    if absent is None:
+        return ""
+    return f"lacks {absent!r} of its columns_shown{did_you_mean(absent, there)}"
 
 
 def _yields_frames(output: Any) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, get_type_hints
 
 from tactile_graph.errors import PluginError
@@ -12,18 +12,24 @@ STACKED = "stacked"
 """The attribute of a step by which it offers the form."""
 
 
+def stacked_form(signature: Signature) -> Callable[..., Any] | None:
+    """Return what a step offers for stacks; an attribute that cannot be called is its own."""
+    form = getattr(signature.target, STACKED, None)
+    return form if callable(form) else None
+
+
 def stacked_kinds(signature: Signature) -> Mapping[str, Any] | None:
     """Return which stack each port of a step's form for stacks takes; None where it offers none.
 
-    An attribute that cannot be called is a plugin's own; a port that takes ``Any`` takes any stack.
+    A port that takes ``Any`` takes any stack.
 
     Raises
     ------
     PluginError
         If the form does not say so of each port.
     """
-    form = getattr(signature.target, STACKED, None)
-    if not callable(form):
+    form = stacked_form(signature)
+    if form is None:
         return None
     from tactile_graph.wires.stacks import Stack
 

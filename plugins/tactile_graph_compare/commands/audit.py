@@ -18,7 +18,7 @@ from tactile_graph.cli.arguments import (
 )
 from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.interrupt import code_of, words_of
-from tactile_graph.cli.leading import led
+from tactile_graph.cli.leading import led_one_by_one
 from tactile_graph.cli.many.options import (
     Shared,
     Sourced,
@@ -177,11 +177,9 @@ class _Taking:
             yield
 
     def _frames(self) -> Iterator[Frame]:
-        from tactile_graph.engine.blocks.gathering import Taken, flat
-
         session = self.auditor.session
         frames = self.auditor.pipeline.frames(self.seed, self.report)
-        return flat(led(Taken(frames), self.span, session.plan, session.pass_over))
+        return led_one_by_one(frames, self.span, session.plan, session.pass_over)
 
     def _by_workers(self, shared: Shared, held: Any) -> Iterator[None]:
         from tactile_graph.cli.say import say

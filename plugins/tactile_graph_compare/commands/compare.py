@@ -21,7 +21,7 @@ from tactile_graph.cli.completions import (
 )
 from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.interrupt import code_of, words_of
-from tactile_graph.cli.leading import led
+from tactile_graph.cli.leading import led_one_by_one
 from tactile_graph.cli.many.options import (
     Shared,
     Sourced,
@@ -318,10 +318,8 @@ class _Run:
         return None, None
 
     def _source(self) -> Iterator[Frame]:
-        from tactile_graph.engine.blocks.gathering import Taken, flat
-
         frames = self.pipeline.frames(self.options.seed, self.report)
-        return flat(led(Taken(frames), self.span, self.session.plan, self.session.pass_over))
+        return led_one_by_one(frames, self.span, self.session.plan, self.session.pass_over)
 
     def _noted(self, held: Any) -> Iterator[None]:
         """Note the frames, here or by workers; yield whenever some are done."""

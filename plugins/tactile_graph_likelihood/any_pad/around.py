@@ -113,8 +113,8 @@ def posterior_around(
     -----
     The likeliest of the fits is sampled with the noise that it has found, an even face with the
     law's exponent; the others stand for themselves as normal distributions, by their evidence over
-    what neighbouring elements share. Where more than 4096 elements are
-    touched a pattern that an even face leaves only widens the posterior.
+    what neighbouring elements share. Where more than 4096 elements are touched a
+    pattern that an even face leaves only widens the posterior.
     """
     return _Around(fits, readings, tops).posterior()
 
@@ -157,15 +157,11 @@ class _Around:
         whole = stretched(whole, readings)
         if is_row(readings):
             whole = within(whole, *told.range_cm(readings))
-        if told.kind != RECTANGLE or self.fits.quick or self._is_wide:
+        if told.kind != RECTANGLE or self.fits.quick or self.readings.is_wide:
             return whole
         whole = resized(whole, UNSEEN * unseen_share(tops[EVEN].fit.fall))
         reaches_beyond = self.fits.reaches_beyond(readings, tops[best])
         return whole if reaches_beyond else evenly_spread(whole)
-
-    @property
-    def _is_wide(self) -> bool:
-        return self.readings.is_wide
 
     def _log_chances(self) -> dict[str, float]:
         # A pressure is told by all of a face: elements count for as much less along both axes.
@@ -195,7 +191,7 @@ class _Around:
         Nor is it looked at where more than 4096 elements are touched.
         """
         told, readings = self.fits.told, self.readings
-        if told.noise.foam_cm > 0.0 or readings.through_foam is not None or self._is_wide:
+        if told.noise.foam_cm > 0.0 or readings.through_foam is not None or self.readings.is_wide:
             return 0.0
         point = told.point_of(self.tops[EVEN])
         return max(lopsided.call(told.kind, point, readings.grid, readings.states), 0.0)
@@ -209,7 +205,7 @@ class _Around:
         told, readings, even = self.fits.told, self.readings, self.tops[EVEN]
         if told.kind == DISC or even.fit.surprise > WELL or readings.touched < FEWEST_OF_TWO:
             return False
-        if self._is_wide or is_row(readings):
+        if self.readings.is_wide or is_row(readings):
             return False
         if told.noise.foam_cm > 0.0 or readings.through_foam is not None:
             return False
@@ -245,7 +241,7 @@ class _Around:
         if self.fits.quick:
             left = hidden_by(its.alike, self.readings) if len(self.tops) == 1 else 0.0
             return left + looseness(self.readings)
-        if not self._is_wide or its.alike <= PATTERN:
+        if not self.readings.is_wide or its.alike <= PATTERN:
             return 0.0
         rises = its.fall < RISES and its.lean <= PATTERN
         return hidden_by(LESS * PATTERN if rises else PATTERN, self.readings)

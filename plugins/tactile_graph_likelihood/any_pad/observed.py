@@ -99,7 +99,7 @@ def observed(
     -------
     Readings
         Elements whose reading is no more than noise are `UNDER` the load that would have shown in
-        their column; where more than 4096 are touched, all show from the same.
+        their column; where more than 1500 are touched, all show from the same.
 
     Raises
     ------

@@ -174,7 +174,7 @@ def settled(problem: Problem, p: Values, root: Values) -> float:
     Parameters
     ----------
     problem : Problem
-        Of more than 4096 touched elements.
+        Of more than 1500 touched elements.
     p, root : ndarray, shape (K,) and (K, K)
         Near the top; written, with the lower root of the information there.
 

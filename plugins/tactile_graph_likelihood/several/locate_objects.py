@@ -163,7 +163,6 @@ class LocateObjects:
             and found.count_probability > LIKELY
             and not overlooked(problem, found)
             and not vague
-            and not readings.ghosts
             and all(shape.fits for shape in shapes)
             and not enclose(found),
         )

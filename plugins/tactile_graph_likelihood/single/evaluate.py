@@ -1,6 +1,6 @@
 """What a search and a sampler ask of a point: element by element, or by the outline's rim.
 
-``whole`` says which. Where up to 4096 elements are touched it is None, and nothing of what wide
+``whole`` says which. Where up to 1500 elements are touched it is None, and nothing of what wide
 outlines need is compiled. Else it is a `CoveredWhole`: of no rows where looking at each element
 costs no more.
 """

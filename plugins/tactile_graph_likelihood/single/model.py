@@ -156,7 +156,7 @@ class Model:
         A sample whose points are worth fewer than there are unknowns promises far too much: its
         covariance is then wider by that of a normal distribution around the top.
         """
-        problem = self._problem(readings, belief)
+        problem = self.problem(readings, belief)
         top = self._find(problem, self._begin(start, problem), EVERY, _way_of(readings))
         if top.mode.height == -math.inf:
             raise self.impossible(readings)
@@ -177,7 +177,7 @@ class Model:
 
         ``attempts`` are `FIRST`, `MORE` after it, or `EVERY` one.
         """
-        problem = self._problem(readings)
+        problem = self.problem(readings)
         return self._find(problem, self._begin(start, problem), attempts, _way_of(readings), before)
 
     def likeliest_near(self, readings: Readings, point: Values | None = None) -> Likeliest:
@@ -185,7 +185,7 @@ class Model:
 
         Without a point, near what has the moments of the touched elements.
         """
-        problem = self._problem(readings)
+        problem = self.problem(readings)
         attempt = 0 if readings.is_wide else NEAR
         return self._find(problem, self._begin(point, problem), [attempt], _way_of(readings))
 
@@ -217,11 +217,11 @@ class Model:
 
     def posterior_around(self, readings: Readings, mode: Mode, loose: float = 0.0) -> Posterior:
         """Return the posterior around a mode, with ``loose`` as in `sample_around`."""
-        return self._sampled(readings, self._problem(readings), mode, loose)
+        return self._sampled(readings, self.problem(readings), mode, loose)
 
     def posterior_near(self, readings: Readings, point: Values, loose: float) -> Posterior:
         """Return the posterior around the top near a point, shape (K,)."""
-        problem = self._problem(readings)
+        problem = self.problem(readings)
         begin = self._begin(point, problem)
         mode = Mode(begin, np.zeros((len(begin), len(begin))), -math.inf)
         return self._sampled(readings, problem, mode, loose)
@@ -293,11 +293,8 @@ class Model:
             f"{readings.touched} touched elements: no such outline on the pad explains them"
         )
 
-    def problem(self, readings: Readings) -> Problem:
+    def problem(self, readings: Readings, belief: Belief = None) -> Problem:
         """Return what is asked of some readings, as the kernels take it."""
-        return self._problem(readings)
-
-    def _problem(self, readings: Readings, belief: Belief = None) -> Problem:
         noise, places, guess = self._noise_at(float(readings.grid[2]))
         if readings.least_log is not None:
             noise = noise.copy()

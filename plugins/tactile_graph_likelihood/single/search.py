@@ -219,7 +219,7 @@ def attempted(
     Parameters
     ----------
     problem : Problem
-        Of at most 4096 touched elements.
+        Of at most 1500 touched elements.
     table : ndarray, shape (N, K)
         As in `sample.Plan`.
     start : ndarray, shape (0,) or (K,)

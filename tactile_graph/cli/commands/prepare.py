@@ -6,7 +6,7 @@ import os
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
-from heapq import heappush, heappushpop
+from heapq import nlargest
 from itertools import islice
 from operator import itemgetter
 from typing import TYPE_CHECKING
@@ -131,12 +131,9 @@ def _telling(frames: Iterator[Frame], n: int) -> list[Frame]:
     """Return the first frames, and of so many that follow the most loaded ones, in their order."""
     import numpy as np
 
+    def load(numbered: tuple[int, Frame]) -> float:
+        return float(np.nansum(numbered[1].image.filled(0.0)))
+
     first = [*islice(frames, FRAMES)]
-    most: list[tuple[float, int, Frame]] = []
-    for i, frame in enumerate(islice(frames, n)):
-        its = (float(np.nansum(frame.image.filled(0.0))), i, frame)
-        if len(most) < FRAMES:
-            heappush(most, its)
-        else:
-            heappushpop(most, its)
-    return first + [frame for _, _, frame in sorted(most, key=itemgetter(1))]
+    most = nlargest(FRAMES, enumerate(islice(frames, n)), key=load)
+    return first + [frame for _, frame in sorted(most, key=itemgetter(0))]

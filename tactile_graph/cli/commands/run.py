@@ -160,14 +160,13 @@ def run(
 def _tell_idle(pipeline: Pipeline, settings: Sequence[str], asked: Sequence[str]) -> None:
     """Say which of the settings given change nothing."""
     if settings:
-        from tactile_graph.cli.terminal import console
+        from tactile_graph.cli.terminal import remark
         from tactile_graph.pipeline.idle import idle_settings
 
         names = [text.partition("=")[0].strip() for text in settings]
         for name in idle_settings(pipeline, names, asked):
             node = name.rpartition(".")[0]
-            told = f"--set {name}: changes nothing, for what is asked for does not need {node!r}"
-            console(stderr=True).print(told, style="yellow", soft_wrap=True)
+            remark(f"--set {name}: changes nothing, for what is asked for does not need {node!r}")
 
 
 def _tell_unseen(pipeline: Pipeline, asked: Sequence[str]) -> None:
@@ -175,9 +174,9 @@ def _tell_unseen(pipeline: Pipeline, asked: Sequence[str]) -> None:
     from tactile_graph.pipeline.unseen import unseen_ends
 
     for told in unseen_ends(pipeline, asked):
-        from tactile_graph.cli.terminal import console
+        from tactile_graph.cli.terminal import remark
 
-        console(stderr=True).print(told, style="yellow", soft_wrap=True)
+        remark(told)
 
 
 def _check_files(output: Output | None, plot: str | None) -> None:
@@ -303,13 +302,9 @@ class _Run:
 
     def _led(self, frames: Taken) -> Iterator[Frame | FrameStack]:
         """Yield the frames asked for; steps that keep state have seen those before them."""
-        if self.decisions is not None:  # of others no state has seen
-            for _ in frames.next(self.span.start):
-                pass
-            yield from frames.next(self.span.most)
-        else:
-            runner = self.runner
-            yield from led(frames, self.span, runner.plan, runner, runner.block)
+        runner = self.runner
+        plan = None if self.decisions is not None else runner.plan  # of others no state has seen
+        yield from led(frames, self.span, plan, runner, runner.block)
         self.report.counts["frames"] -= frames.n_left  # they came in a stack, and nobody asked
 
     def _decided(self, frames: Iterator[Frame | FrameStack]) -> Iterator[Frame | FrameStack]:

@@ -59,7 +59,9 @@ def place_asked(workers: int | None, on: str | None) -> Place | None:
 
     most = most_workers()
     if workers is not None and workers > most and on in (None, USUAL):
-        _say(f"--workers {workers}: {most} are started, {MOST_PER_CORE} for each core there is")
+        from tactile_graph.cli.terminal import remark
+
+        remark(f"--workers {workers}: {most} are started, {MOST_PER_CORE} for each core there is")
     return place_of(on, workers)
 
 
@@ -79,13 +81,9 @@ def place_for(workers: int | None, on: str | None, plan: Plan) -> Place | None:
 
 def say_in_one_process(why: object) -> None:
     """Tell people why workers are asked for in vain."""
-    _say(f"in one process: {why}")
+    from tactile_graph.cli.terminal import remark
 
-
-def _say(text: str) -> None:
-    from tactile_graph.cli.terminal import console
-
-    console(stderr=True).print(text, style="yellow", soft_wrap=True)
+    remark(f"in one process: {why}")
 
 
 class Workers(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic from click 8.4 on
@@ -207,7 +205,7 @@ def shared_for(
     place = place_asked(workers, on)
     if place is None:
         return None
-    from tactile_graph.cli.terminal import console
+    from tactile_graph.cli.terminal import remark
     from tactile_graph.many.division import division_of, led_to
     from tactile_graph.many.feed import ranges_of
 
@@ -217,7 +215,7 @@ def shared_for(
         say_in_one_process(division.why_not)
         return None
     if division.by_recording:
-        console(stderr=True).print(BY_RECORDING, style="yellow", soft_wrap=True)
+        remark(BY_RECORDING)
     return Shared(place, division, ranges)
 
 

@@ -12,6 +12,7 @@ from tactile_graph.errors import DataError, Degenerate, Skip, TactileGraphError,
 from tactile_graph.files import lies_beside
 from tactile_graph.pipeline.graph import Source
 from tactile_graph.steps.injected import Report
+from tactile_graph.steps.stacked import stacked_form
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.frame_stack import FrameStack
 
@@ -61,8 +62,7 @@ def open_source(
 
 def _frames(source: Source, seed: int, report: Report, in_stacks: bool) -> Iterator[Any]:
     signature = source.signature
-    form = getattr(signature.target, "stacked", None) if in_stacks else None
-    form = form if callable(form) else None
+    form = stacked_form(signature) if in_stacks else None
     target = signature.target if form is None else form
     injected: dict[str, Any] = {}
     if signature.rng:

@@ -16,7 +16,7 @@ import numpy as np
 
 from tactile_graph.engine.outcomes.outcome import NO_VALUE, defined_at
 from tactile_graph.engine.outcomes.outcomes import Outcomes
-from tactile_graph.errors import PluginError, did_you_mean
+from tactile_graph.errors import PluginError
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.pipeline.wiring import arms, public_fields
 from tactile_graph.plugins.registry import Registry
@@ -101,14 +101,8 @@ def absent_column(value: Any) -> str:
     """
     if isinstance(value, list | tuple):
         return next(filter(None, map(absent_column, value[:MOST_ITEMS])), "")
-    kind, there = type(value), dir(value)
-    if odd := odd_columns(kind):
-        return f"gave {kind.__name__}, which {odd}"
-    for name in getattr(kind, "columns_shown", ()):
-        if name not in there and not hasattr(value, name):
-            hint = did_you_mean(name, there)
-            return f"gave {kind.__name__}, which lacks {name!r} of its columns_shown{hint}"
-    return ""
+    odd = odd_columns(type(value), dir(value), partial(hasattr, value))
+    return f"gave {type(value).__name__}, which {odd}" if odd else ""
 
 
 def _fits(value: Any, arm: Any) -> bool:
