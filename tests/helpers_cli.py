@@ -226,3 +226,14 @@ def call(*args: object) -> Result:
     from tactile_graph.cli import cli
 
     return CliRunner(env={"COLUMNS": "160"}).invoke(cli, [str(a) for a in args])
+
+
+class Counting:
+    """How many frames it ran on."""
+
+    def __init__(self) -> None:
+        self.n = 0
+
+    def __call__(self, image: Image) -> int:
+        self.n += 1
+        return self.n

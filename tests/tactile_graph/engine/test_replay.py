@@ -96,15 +96,17 @@ def test_a_node_the_recorded_plan_lacks_is_an_error() -> None:
         replay("spare")(pipeline().run(frame(3), only=["number"]))
 
 
-def test_items_without_a_value_are_told_in_the_plans_own_names() -> None:
-    lists = """\
+PICKY = """\
 pipeline: p
 nodes:
   number: {step: read, in: frame}
   items: {step: many, in: number}
   some: {step: picky, in: items, each: true, with: {bad: 2}}
-outputs: [some]
 """
+
+
+def test_items_without_a_value_are_told_in_the_plans_own_names() -> None:
+    lists = f"{PICKY}outputs: [some]\n"
     plan = make_plan(loads(lists, "p.yaml", registry(STEPS)), ("some",))
     recorded = loads(lists.replace("some", "few"), "p.yaml", registry(STEPS)).run(frame(3))
     alone = Replay(plan, {"number": "number", "items": "items", "some": "few"})(recorded)
@@ -114,16 +116,12 @@ outputs: [some]
 
 
 def test_items_handed_on_are_told_in_the_plans_own_names() -> None:
-    lists = """\
-pipeline: p
-nodes:
-  number: {step: read, in: frame}
-  items: {step: many, in: number}
-  some: {step: picky, in: items, each: true, with: {bad: 2}}
+    more = """\
   more: {step: add1, in: some, each: true}
   sum: {step: total, in: more}
 outputs: [more, sum]
 """
+    lists = f"{PICKY}{more}"
     own = loads(lists, "p.yaml", registry(STEPS))
     recorded = loads(lists.replace("some", "few"), "p.yaml", registry(STEPS)).run(frame(3))
     names = {name: name for name in own.nodes}

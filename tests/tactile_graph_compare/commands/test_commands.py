@@ -13,7 +13,7 @@ from types import ModuleType
 
 import pytest
 
-from helpers_cli import call, install
+from helpers_cli import Counting, call, install
 from helpers_compare import COMPARE
 from tactile_graph import Image
 from tactile_graph.cli.endings import PIPE_CLOSED
@@ -107,17 +107,6 @@ def test_a_span_of_frames_is_told_and_can_be_asked_for_again(hand_made):
     found = re.search(r'<pre class="command"><code>(tactile-graph .*?)</code>', page)
     assert found is not None, "what to type again stands in the report"
     assert "--frames 2:6 " in found[1]
-
-
-class Counting:
-    """How many frames it ran on."""
-
-    def __init__(self) -> None:
-        self.n = 0
-
-    def __call__(self, image: Image) -> int:
-        self.n += 1
-        return self.n
 
 
 COUNTING = """\

@@ -21,8 +21,8 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from helpers_cli import DISCS, broken_plugin, call, install
-from tactile_graph import Frame, Image, Mask, load
+from helpers_cli import DISCS, Counting, broken_plugin, call, install
+from tactile_graph import Frame, Mask, load
 from tactile_graph.cli.output.live_table import LiveTable
 from tactile_graph.engine.tables.columns import Column, columns_of
 from tactile_graph.pipeline.document import assignment
@@ -281,17 +281,6 @@ def test_an_output_file_has_its_provenance_beside_it(tmp_path):
 def test_frames_are_chosen_by_count(span, expected):
     got = call("run", "loads", "--source", "made", "--frames", span, "-o", "-")
     assert [f["frame"] for f in lines(got.stdout)] == expected
-
-
-class Counting:
-    """How many frames it ran on."""
-
-    def __init__(self) -> None:
-        self.n = 0
-
-    def __call__(self, image: Image) -> int:
-        self.n += 1
-        return self.n
 
 
 COUNTING = "pipeline: counting\nnodes:\n  n: {step: counting, in: frame}\noutputs: [n]\n"
