@@ -138,3 +138,14 @@ def test_of_frames_in_stacks_only_those_asked_for_count(monkeypatch: pytest.Monk
     monkeypatch.delattr(Pipeline, "frames")
     *_, (source, _) = written("stateful", ("film.npy", *VOLT), "out.csv", "--frames", "3:17")
     assert source["counts"]["frames"] == 17
+
+
+@pytest.mark.slow
+def test_frames_before_a_part_lead_the_state_in_stacks(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gathering, "WORTH_BLOCKS", 1)
+    monkeypatch.delattr(Pipeline, "frames")
+    asked = "stateful", ("film.npy", *VOLT), "out.jsonl", "--full"
+    whole, _, _ = written(*asked)
+    part, said, _ = written(*asked, "--frames", "13:27")
+    assert "frames before 13 are run first" in said
+    assert part.splitlines() == whole.splitlines()[13:27]
