@@ -38,7 +38,7 @@ from second_simulator import KINDS, Bench, Outline
 from tactile_graph import Circle, Frame, Pipeline, Rectangle, load
 from tactile_graph.compiled import warm_up
 from tactile_graph.wires import TrueObject
-from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.any_pad.observation.observed import observed
 from tactile_graph_likelihood.several.locate_objects import LocateObjects
 from tactile_graph_likelihood.several.pad import split
 from tactile_graph_pads.pad import load_pad

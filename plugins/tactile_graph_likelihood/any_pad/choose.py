@@ -9,15 +9,15 @@ import numpy as np
 from annotated_types import Len
 
 from tactile_graph.wires import Image
-from tactile_graph_likelihood.any_pad.around import posterior_around
-from tactile_graph_likelihood.any_pad.contest import tops_of_each
-from tactile_graph_likelihood.any_pad.first_fit import gains_hold
-from tactile_graph_likelihood.any_pad.ghosts import tells_of_ghosts
-from tactile_graph_likelihood.any_pad.learned_pad import Placing
-from tactile_graph_likelihood.any_pad.localise import AnyPad
+from tactile_graph_likelihood.any_pad.fits.contest import tops_of_each
+from tactile_graph_likelihood.any_pad.fits.first_fit import gains_hold
+from tactile_graph_likelihood.any_pad.fits.localise import AnyPad
+from tactile_graph_likelihood.any_pad.fits.pressure_chances import log_chances, shared_by
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, SoonSettings
-from tactile_graph_likelihood.any_pad.observed import NearlySquare, observed
-from tactile_graph_likelihood.any_pad.pressure_chances import log_chances, shared_by
+from tactile_graph_likelihood.any_pad.observation.learned_pad import Placing
+from tactile_graph_likelihood.any_pad.observation.observed import NearlySquare, observed
+from tactile_graph_likelihood.any_pad.uncertainty.around import posterior_around
+from tactile_graph_likelihood.any_pad.uncertainty.ghosts import tells_of_ghosts
 from tactile_graph_likelihood.single.any_pressure import shares_by
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely

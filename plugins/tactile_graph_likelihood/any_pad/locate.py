@@ -6,12 +6,12 @@ from typing import Annotated
 
 from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
-from tactile_graph_likelihood.any_pad.around import posterior_around
-from tactile_graph_likelihood.any_pad.first_fit import first_fit
-from tactile_graph_likelihood.any_pad.ghosts import tells_of_ghosts
-from tactile_graph_likelihood.any_pad.learned_pad import Placing
-from tactile_graph_likelihood.any_pad.localise import AnyPad
-from tactile_graph_likelihood.any_pad.observed import NearlySquare
+from tactile_graph_likelihood.any_pad.fits.first_fit import first_fit
+from tactile_graph_likelihood.any_pad.fits.localise import AnyPad
+from tactile_graph_likelihood.any_pad.observation.learned_pad import Placing
+from tactile_graph_likelihood.any_pad.observation.observed import NearlySquare
+from tactile_graph_likelihood.any_pad.uncertainty.around import posterior_around
+from tactile_graph_likelihood.any_pad.uncertainty.ghosts import tells_of_ghosts
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single.likely import (

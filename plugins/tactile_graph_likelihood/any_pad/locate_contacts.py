@@ -11,9 +11,9 @@ from annotated_types import Len
 from tactile_graph.errors import Degenerate
 from tactile_graph_filters.contacts.contacts import Contact
 from tactile_graph_likelihood.any_pad.choose import Locate, Name
-from tactile_graph_likelihood.any_pad.ghosts import tells_of_ghosts
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, AnyPadSettings
-from tactile_graph_likelihood.any_pad.observed import NearlySquare
+from tactile_graph_likelihood.any_pad.observation.observed import NearlySquare
+from tactile_graph_likelihood.any_pad.uncertainty.ghosts import tells_of_ghosts
 from tactile_graph_likelihood.single.likely import Likely
 from tactile_graph_likelihood.single.readings import Readings
 

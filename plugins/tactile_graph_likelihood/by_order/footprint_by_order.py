@@ -14,7 +14,7 @@ from tactile_graph.steps import Spread
 from tactile_graph.steps.rules import Grid, require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.readings.decouple import Decouple
-from tactile_graph_likelihood.any_pad.observed import gap_by
+from tactile_graph_likelihood.any_pad.observation.observed import gap_by
 from tactile_graph_likelihood.by_order.posterior import order_posterior
 from tactile_graph_likelihood.geometry.outlines import FREE, REGULAR
 from tactile_graph_likelihood.settings import DEFAULTS, FootprintSettings, Share

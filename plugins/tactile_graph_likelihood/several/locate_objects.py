@@ -10,8 +10,13 @@ import numpy as np
 from annotated_types import Ge, Le, MinLen
 
 from tactile_graph.steps import Spread
-from tactile_graph_likelihood.any_pad.filtered import as_filtered
-from tactile_graph_likelihood.any_pad.from_frame import (
+from tactile_graph_likelihood.any_pad.observation.observed import (
+    NearlySquare,
+    gap_by,
+    observed,
+    uniform,
+)
+from tactile_graph_likelihood.any_pad.pad_effects.from_frame import (
     FEWEST,
     MOST_STRAYS,
     NORMAL,
@@ -20,10 +25,15 @@ from tactile_graph_likelihood.any_pad.from_frame import (
     learned,
     variance_inflation,
 )
-from tactile_graph_likelihood.any_pad.ghosts import as_ghostly, tells_of_ghosts
-from tactile_graph_likelihood.any_pad.observed import NearlySquare, gap_by, observed, uniform
-from tactile_graph_likelihood.any_pad.posterior import on_any_pad, stretched, unsized, within
-from tactile_graph_likelihood.any_pad.through_foam import without_foam
+from tactile_graph_likelihood.any_pad.pad_effects.through_foam import without_foam
+from tactile_graph_likelihood.any_pad.uncertainty.ghosts import as_ghostly, tells_of_ghosts
+from tactile_graph_likelihood.any_pad.uncertainty.posterior import on_any_pad
+from tactile_graph_likelihood.any_pad.uncertainty.widened import (
+    as_filtered,
+    stretched,
+    unsized,
+    within,
+)
 from tactile_graph_likelihood.geometry.outline_prior import LARGEST, SMALLEST
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Shape
-from tactile_graph_likelihood.any_pad.gap import narrower
+from tactile_graph_likelihood.any_pad.pad_effects.gap import narrower
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, Values, packed, unknowns
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.joint_posterior import (

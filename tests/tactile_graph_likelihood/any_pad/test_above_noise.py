@@ -7,8 +7,9 @@ from helpers_modes import held, plainly
 from tactile_graph.errors import DataError, Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_filters.readings.ordered import in_order
-from tactile_graph_likelihood.any_pad.above_noise import EVERY, SHOWS, AboveNoise, risen, rising
-from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.any_pad.above_noise import AboveNoise
+from tactile_graph_likelihood.any_pad.observation.observed import observed
+from tactile_graph_likelihood.any_pad.observation.rising import EVERY, SHOWS, risen, rising
 from tactile_graph_likelihood.single.element_terms import UNKNOWN
 from tactile_graph_pads.pad import load_pad
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from tactile_graph.wires import Image
-from tactile_graph_likelihood.any_pad.gap import sized
 from tactile_graph_likelihood.any_pad.locate import LocateDisc
-from tactile_graph_likelihood.any_pad.observed import GAP, observed
-from tactile_graph_likelihood.any_pad.turn_on import chance_of_an_even_pad
-from tactile_graph_likelihood.any_pad.unheld import unheld
+from tactile_graph_likelihood.any_pad.observation.observed import GAP, observed
+from tactile_graph_likelihood.any_pad.pad_effects.gap import sized
+from tactile_graph_likelihood.any_pad.pad_effects.turn_on import chance_of_an_even_pad
+from tactile_graph_likelihood.any_pad.pad_effects.unheld import unheld
 from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single.any_pressure import EVEN
 

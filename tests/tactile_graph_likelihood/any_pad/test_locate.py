@@ -11,12 +11,12 @@ import pytest
 from helpers_likelihood import made
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image
-from tactile_graph_likelihood.any_pad import around
 from tactile_graph_likelihood.any_pad.choose import Locate
-from tactile_graph_likelihood.any_pad.from_frame import variance_inflation
-from tactile_graph_likelihood.any_pad.left_open import is_scattered
+from tactile_graph_likelihood.any_pad.fits.left_open import is_scattered
 from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse, LocateRectangle
-from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.any_pad.observation.observed import observed
+from tactile_graph_likelihood.any_pad.pad_effects.from_frame import variance_inflation
+from tactile_graph_likelihood.any_pad.uncertainty import under_pressure
 from tactile_graph_likelihood.geometry.outlines import DISC
 from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single import readings
@@ -130,7 +130,7 @@ def test_of_few_elements_an_outline_is_sampled_as_much_more_precisely(monkeypatc
         return np.mean([step.posterior(frame.image).equal_points for frame in frames])
 
     finer = worth()
-    monkeypatch.setattr(around, "FINER", 0.0)
+    monkeypatch.setattr(under_pressure, "FINER", 0.0)
     assert finer > 2.0 * worth() > 2.0 * step._any_pad.told.precision**-2
 
 
@@ -374,7 +374,7 @@ def test_where_neighbours_are_alike_gains_scatter_more_than_they_seem_to(
     kind, least, most, monkeypatch
 ):
     (frame,) = Bench(KINDS[kind], np.random.default_rng(6)).frames(1)
-    learned, ratios = around.learned, []
+    learned, ratios = under_pressure.learned, []
 
     def kept(*args):
         *its, shared = args
@@ -382,7 +382,7 @@ def test_where_neighbours_are_alike_gains_scatter_more_than_they_seem_to(
         ratios.append(noise.sigma / learned(*its, 1.0).sigma)
         return noise
 
-    monkeypatch.setattr(around, "learned", kept)
+    monkeypatch.setattr(under_pressure, "learned", kept)
     LocateDisc().posterior(frame.image)
     assert least <= ratios[-1] <= most
 

@@ -8,8 +8,8 @@ from scipy.ndimage import gaussian_filter
 
 from tactile_graph import Image, load
 from tactile_graph.wires import Circle
-from tactile_graph_likelihood.any_pad import around
-from tactile_graph_likelihood.any_pad.observed import GAP_STD
+from tactile_graph_likelihood.any_pad.observation.observed import GAP_STD
+from tactile_graph_likelihood.any_pad.uncertainty import around
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("warm_kernels")]
 
@@ -106,7 +106,7 @@ def test_looked_at_by_its_rim_an_outline_is_the_same(monkeypatch: pytest.MonkeyP
     volts, _ = pressed(np.random.default_rng(35), 1.463, Pad(80, radii=(28.0, 34.0)))
     image = Image(volts, (PITCH_CM,) * 2, quantity="volt")
     by_rim = load("locate-circle").run(image)["circle"]
-    for room in ("single.readings", "any_pad.observed"):
+    for room in ("single.readings", "any_pad.observation.observed"):
         monkeypatch.setattr(f"tactile_graph_likelihood.{room}.SOME", 10_000)
     one_by_one = load("locate-circle").run(image)["circle"]
     assert by_rim.x_cm == pytest.approx(one_by_one.x_cm, abs=0.05 * PITCH_CM)

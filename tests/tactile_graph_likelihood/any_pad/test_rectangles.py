@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from tactile_graph.wires import Image, Rectangle
-from tactile_graph_likelihood.any_pad.left_open import NO_FALL, SOME_FALL, unseen_share
+from tactile_graph_likelihood.any_pad.fits.left_open import NO_FALL, SOME_FALL, unseen_share
 from tactile_graph_likelihood.any_pad.locate import LocateRectangle
-from tactile_graph_likelihood.any_pad.posterior import AnyPadPosterior, evenly_spread, resized
+from tactile_graph_likelihood.any_pad.uncertainty.posterior import AnyPadPosterior
+from tactile_graph_likelihood.any_pad.uncertainty.widened import evenly_spread, resized
 from tactile_graph_likelihood.geometry.outlines import RECTANGLE
 from tactile_graph_likelihood.single.posterior import normal_reach
 
@@ -94,7 +95,7 @@ def test_a_rectangle_that_falls_to_its_rim_is_told_from_an_even_one():
 def fall_left(image: Image) -> float:
     """Return how much the residuals of an even rectangle fall to the rim."""
     step = LocateRectangle()
-    from tactile_graph_likelihood.any_pad.observed import observed
+    from tactile_graph_likelihood.any_pad.observation.observed import observed
 
     readings = observed(image, step._pad, step._gap_cm)
     _, _, even = step._any_pad.first(readings)

@@ -5,7 +5,7 @@ import pytest
 
 from tactile_graph.compiled import warm_up
 from tactile_graph.wires import Circle, Image, Rectangle
-from tactile_graph_likelihood.any_pad.observed import observed
+from tactile_graph_likelihood.any_pad.observation.observed import observed
 from tactile_graph_likelihood.several.locate_objects import LocateObjects
 from tactile_graph_likelihood.several.sides import sides_moved
 from tactile_graph_pads.pad import load_pad

@@ -1,0 +1,376 @@
+"""``AnyPad``: fits of an outline on a pad that need not be the one that is told."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tactile_graph_likelihood.any_pad.fits.left_open import (
+    FEW,
+)
+from tactile_graph_likelihood.any_pad.fits.pressure_chances import (
+    FOAM,
+)
+from tactile_graph_likelihood.any_pad.fits.second_climbs import (
+    among_strays,
+    around_clump,
+    beyond_the_edge,
+)
+from tactile_graph_likelihood.any_pad.fits.waist import gain_by_two
+from tactile_graph_likelihood.any_pad.observation.clump import without_alone
+from tactile_graph_likelihood.any_pad.observation.learned_pad import unevenness_left
+from tactile_graph_likelihood.any_pad.pad_effects.from_frame import (
+    LAW,
+    is_partly_hidden,
+    strays_beyond,
+)
+from tactile_graph_likelihood.any_pad.pad_effects.gap import sized
+from tactile_graph_likelihood.any_pad.pad_effects.hollow import without_hollow
+from tactile_graph_likelihood.any_pad.pad_effects.through_foam import has_no_foam, without_foam
+from tactile_graph_likelihood.any_pad.pad_effects.turn_on import (
+    SURE,
+    chance_of_a_bend,
+    straightened,
+    unbent,
+)
+from tactile_graph_likelihood.any_pad.pad_effects.unheld import unheld
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, sizes, unknowns
+from tactile_graph_likelihood.settings import LocateSettings
+from tactile_graph_likelihood.single.any_pressure import (
+    CLEAR,
+    EVEN,
+    FIRST,
+    WIDER,
+    Pattern,
+    asked_by,
+)
+from tactile_graph_likelihood.single.changed import changed
+from tactile_graph_likelihood.single.element_terms import UNKNOWN
+from tactile_graph_likelihood.single.model import EVERY, MORE, SECOND, Likeliest, Model
+from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
+from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_likelihood.single.search import SAME
+
+FAINT = Pattern(1.0, 0.4, 2.5)
+"""From which on another pressure is worth its time; where a quick answer will do, it is `CLEAR`."""
+
+SHARPER = 0.6
+"""As `FAINT`, the fall of a rectangle: its own shape tells more of that."""
+
+MANY = 8.0
+"""Times what is told of strays from which on an outline is searched for anew, knowing of them."""
+
+THINNEST = 0.12
+"""Half of a rectangle's breadth in pitches, at least, where nothing else is told: a book's edge."""
+
+PRESSURES: dict[str, list[float]] = {EVEN: [], **FIRST}
+"""What each pressure estimates beside an even face's numbers, where its fit begins."""
+
+
+@dataclass(frozen=True)
+class AnyPad:
+    """Fits of an outline that take law, gains, voids, strays and pressure from the frame itself.
+
+    Parameters
+    ----------
+    told : Model
+        An outline on the pad as told: the middle of every guess.
+    law : float
+        As in `learned`; 0 where gains were learned, since readings then scatter as these are good.
+    quick : bool
+        Whether no fit is sampled, but one with an angle that reaches over the pad's edge: each
+        stands for itself as a normal distribution, an even face's with the law's exponent, and
+        other pressures are looked at where the pattern is clear. A fainter one widens the
+        posterior. On small pads only: see `suited`.
+    sampled_above_cm : float
+        The deviation of its centre from which on a quick disc is sampled after all.
+    unevened : AnyPad, optional
+        Where gains were learned: the same for readings that are not divided by them.
+    foam_cm : float
+        Width of foam that the pad tells of; ``told`` knows of none, since it is undone.
+
+    Notes
+    -----
+    The outline is fitted with sigma and voids; also under each pressure that an even face leaves a
+    pattern of. What they come to together, `posterior_around` tells.
+    """
+
+    told: Model
+    law: float = LAW
+    quick: bool = False
+    sampled_above_cm: float = math.inf
+    unevened: AnyPad | None = None
+    foam_cm: float = 0.0
+
+    @classmethod
+    def of(cls, settings: LocateSettings, kind: int) -> AnyPad:
+        """Return the fits of a kind of outline; a pad that says it is even has not been asked."""
+        told, untold = settings.model(kind), Noise()
+        if kind == RECTANGLE:
+            told = changed(told, smallest_pitches=THINNEST)
+        foam_cm = told.noise.foam_cm
+        told = changed(told, noise=changed(told.noise, foam_cm=0.0))
+        sigma, voids = told.noise.sigma, told.noise.voids
+        if sigma < LEAST_SIGMA:
+            sigma, voids = untold.sigma, voids or untold.voids
+        elif settings.sigma is None:
+            sigma = unevenness_left(settings.known_pad, sigma)
+        noise = changed(told.noise, sigma=sigma, voids=voids)
+        above_cm = math.inf if settings.sampled_above_cm is None else settings.sampled_above_cm
+        if sigma >= told.noise.sigma:
+            its = changed(told, noise=noise)
+            return cls(its, LAW, settings.quick, above_cm, foam_cm=foam_cm)
+        plain = cls(told, LAW, settings.quick, above_cm, foam_cm=foam_cm)
+        return cls(changed(told, noise=noise), 0.0, settings.quick, above_cm, plain, foam_cm)
+
+    @cached_property
+    def _of_wide(self) -> AnyPad:
+        return changed(self.told_of_foam, quick=False)
+
+    def suited(self, readings: Readings) -> AnyPad:
+        """Return these fits, or those for more than 4096 touched elements.
+
+        They are not quick, and know of the foam that is told, since none is undone there.
+        """
+        wide = readings.is_wide
+        return self._of_wide if wide and (self.quick or self.foam_cm > 0.0) else self
+
+    @cached_property
+    def _kept(self) -> dict[str, Model]:
+        return {}
+
+    def _fit(self, pressure: str) -> Model:
+        """Return the model that estimates sigma and voids with the outline, under a pressure."""
+        found = self._kept.get(pressure)
+        if found is None:
+            own = ["contrast"] if self.quick else []
+            parts = own if pressure == EVEN else [pressure]
+            found = self._kept[pressure] = self._search(self.told.noise, *parts, "sigma", "voids")
+        return found
+
+    @cached_property
+    def n_even(self) -> int:
+        """How many numbers an even face has on a pad whose noise is known."""
+        return unknowns.call(self.told.kind, self.told.corners) + 1
+
+    def _search(self, noise: Noise, *estimated: str) -> Model:
+        """Return a model that goes over the pad's edge, unless it must not, as if there were none.
+
+        Where the edge makes a step in the prior, a search would be caught before it.
+        """
+        whole = 1.0 if self.told.whole >= 1.0 else 0.0
+        return changed(self.told, noise=changed(noise, estimated=estimated), whole=whole)
+
+    def first(self, readings: Readings) -> tuple[AnyPad, Readings, Likeliest]:
+        """Return the even face's most likely outline as it is first found, and its readings.
+
+        With the fits that found it; see `begun` and `cleared`.
+        """
+        its, even = self.begun(readings)
+        return its.on_told_foam(*its.cleared(readings, even))
+
+    def on_told_foam(
+        self, readings: Readings, even: Likeliest
+    ) -> tuple[AnyPad, Readings, Likeliest]:
+        """Return fits that know of the foam that is told, where it is likelier and was not undone.
+
+        Then elements have gains of their own under it.
+        """
+        its = self.told_of_foam
+        if its is self or readings.through_foam is not None:
+            return self, readings, even
+        other = its.near(readings, self.told.point_of(even))
+        return (its, readings, other) if other.evidence > even.evidence else (self, readings, even)
+
+    @cached_property
+    def told_of_foam(self) -> AnyPad:
+        """The same fits, which know of the foam that is told."""
+        if self.foam_cm <= 0.0:
+            return self
+        noise = changed(self.told.noise, foam_cm=self.foam_cm)
+        return changed(self, told=changed(self.told, noise=noise), foam_cm=0.0)
+
+    def begun(self, readings: Readings) -> tuple[AnyPad, Likeliest]:
+        """Return the even face's most likely outline by one attempt, and the fits that found it.
+
+        Where touched elements stand alone away from the others, a disc is first looked for near
+        one of these. If strays lie beyond that, the fits know of as many, and there were two more
+        attempts. Not so where more than 4096 are touched, nor of an outline with an angle, which
+        would rather be caught there.
+        """
+        model, wide = self._fit(EVEN), readings.is_wide
+        some = None if wide or self.told.kind != DISC else without_alone(readings)
+        if some is None or (rough := model.likeliest(some)).mode.height == -math.inf:
+            return self, model.likeliest(readings)
+        if not (strays := self.strays(readings, rough)):
+            return self, self.near(readings, self.told.point_of(rough))
+        its = self.knowing(strays)
+        model, near = its._fit(EVEN), its.near(readings, self.told.point_of(rough))
+        return its, among_strays(model, readings, model.likeliest(readings, near, attempts=SECOND))
+
+    def cleared(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
+        """Return readings free of a limit and a law's improbable bend, of foam and a hollow.
+
+        With their outline, and on elements as large as they tell. Only where up to 4096
+        are touched.
+        """
+        if readings.is_wide or even.mode.height == -math.inf:
+            return readings, even
+        model = self._fit(EVEN)
+        readings, even = unheld(model, readings, even)
+        if (bare := unbent(readings)) is not None:
+            readings, even = self._by_law(readings, even, *bare)
+        if self.foam_cm > 0.0 or asked_by([even.fit], [FOAM], self._faint):
+            its = without_foam(readings, self.foam_cm)
+            if its is not None:
+                readings, even = its, self.near(its, self.told.point_of(even))
+        p = self.told.point_of(even)
+        rim = without_hollow(self.told.kind, readings, p, float(p[-1]))
+        if rim is not None:
+            readings, even = rim, self.near(rim, p)
+        return (readings, even) if readings.through_foam else sized(model, readings, even)
+
+    def _by_law(
+        self, readings: Readings, even: Likeliest, straight: Readings, denser: float
+    ) -> tuple[Readings, Likeliest]:
+        """Return readings with as much of the told law's bend as is probable, and their outline.
+
+        Sizes go with the bend evenly: it is the mean over both laws, at the price of one.
+        """
+        other = self.near(straight, self.told.point_of(even))
+        bend = chance_of_a_bend(other.mode.height + denser - even.mode.height)
+        if bend > 1.0 - SURE:
+            return readings, even
+        if bend < SURE:
+            return straight, other
+        partly = straightened(readings, 1.0 - bend)
+        return partly, self.near(partly, self.told.point_of(even if bend > 0.5 else other))
+
+    def near(self, readings: Readings, point: Values | None = None) -> Likeliest:
+        """Return the even face's most likely outline, as `Model.likeliest_near` finds it."""
+        return self._fit(EVEN).likeliest_near(readings, point)
+
+    def searched(self, readings: Readings, near: Likeliest) -> Likeliest:
+        """Return the same after all attempts that are worth their time.
+
+        Where a quick answer will do, a first attempt that finds no more than ``near`` is the last.
+        """
+        if not self.quick:
+            return self._fit(EVEN).likeliest(readings, near, attempts=EVERY)
+        even = self._fit(EVEN).likeliest(readings, near)
+        if -math.inf < even.mode.height <= near.mode.height + SAME:
+            return even._replace(unsure=False)
+        return self.sought(readings, even)
+
+    def sought(self, readings: Readings, even: Likeliest) -> Likeliest:
+        """Return the same after more attempts, where the first ones left that open."""
+        more = even.unsure
+        return self._fit(EVEN).likeliest(readings, even, attempts=MORE) if more else even
+
+    def strays(self, readings: Readings, even: Likeliest) -> float:
+        """Return the share of strays beyond an outline, 0 unless it is far more than told."""
+        found = strays_beyond(self.told, readings, self.told.point_of(even))
+        return found if found > MANY * self.told.noise.strays else 0.0
+
+    def knowing(self, strays: float) -> AnyPad:
+        """Return fits that are told of so many strays."""
+        return changed(self, told=changed(self.told, noise=changed(self.told.noise, strays=strays)))
+
+    def likelier_with(
+        self, strays: float, readings: Readings, even: Likeliest
+    ) -> tuple[AnyPad, Likeliest]:
+        """Return fits that are told of so many strays and their outline, or these if likelier."""
+        knowing = self.knowing(strays)
+        other = knowing.again(readings, even)
+        likelier = other.evidence + self.bare_by(strays, readings) > even.evidence
+        return (knowing, other) if likelier else (self, even)
+
+    def bare_by(self, strays: float, readings: Readings) -> float:
+        """Return the log likelihood of a bare pad of so many strays over that of as many as told.
+
+        Evidence is over that of a bare pad.
+        """
+        told = self.told.noise.strays
+        bare = int(np.count_nonzero(readings.states != UNKNOWN)) - readings.touched
+        more, fewer = math.log(strays / told), math.log1p(-strays) - math.log1p(-told)
+        return readings.touched * more + bare * fewer
+
+    def again(self, readings: Readings, even: Likeliest) -> Likeliest:
+        """Return what is likelier, near an outline and elsewhere, now that strays are known."""
+        near, model = self.near(readings, self.told.point_of(even)), self._fit(EVEN)
+        wide = readings.is_wide
+        if wide and not near.unsure:
+            return near
+        found = model.likeliest(readings, near, attempts=MORE)
+        return found if wide else among_strays(model, readings, found)
+
+    def completed(
+        self, readings: Readings, even: Likeliest, alone: bool = True
+    ) -> dict[str, Likeliest]:
+        """Return the most likely outlines by pressure, once one attempt found one of an even face.
+
+        Parameters
+        ----------
+        readings : Readings
+        even : Likeliest
+        alone : bool
+            Whether no other kind is compared with, which would have to know of as many strays.
+
+        Raises
+        ------
+        Degenerate
+            If no outline of this kind is possible.
+        """
+        wide, model = readings.is_wide, self._fit(EVEN)
+        if not wide:
+            even = self.sought(readings, even)
+        if readings.touched <= FEW:
+            even = around_clump(model, readings, even)
+        if even.mode.height == -math.inf:
+            raise self.told.impossible(readings)
+        its = self
+        if alone and (strays := self.strays(readings, even)):
+            its, even = self.likelier_with(strays, readings, even)
+        elif wide and even.unsure:
+            even = model.likeliest(readings, even, attempts=MORE)
+        if not wide:
+            even = beyond_the_edge(its._fit(EVEN), readings, even)
+        found = {EVEN: even}
+        asked = [] if wide else asked_by([even.fit], FIRST, CLEAR if self.quick else self._faint)
+        if asked and "fall" not in asked and has_no_foam(readings):
+            asked = [part for part in asked if part != FOAM]  # that of own gains falls to the rim
+        hidden = bool(asked) and self.reaches_beyond(readings, even)
+        for part in asked:
+            if hidden and part != FOAM:
+                continue
+            top = its._pressed(part, readings, even)
+            if hidden and self.reaches_beyond(readings, top):
+                continue
+            if top.mode.height > -math.inf:
+                found[part] = top
+        return found
+
+    @cached_property
+    def _faint(self) -> Pattern:
+        return FAINT._replace(fall=SHARPER) if self.told.kind == RECTANGLE else FAINT
+
+    def gain_by_two(self, readings: Readings, even: Likeliest) -> float:
+        """Return `gain_by_two` of an even face's most likely outline, which is no disc."""
+        return gain_by_two.call(self._fit(EVEN).problem(readings), even.mode.p)
+
+    def reaches_beyond(self, readings: Readings, top: Likeliest) -> bool:
+        """Return whether a most likely outline is partly beyond the pad's edge.
+
+        Foam, which makes outlines too large, may be why.
+        """
+        return is_partly_hidden(self.told.kind, readings, self.told.point_of(top))
+
+    def _pressed(self, part: str, readings: Readings, even: Likeliest) -> Likeliest:
+        n, p = self.n_even, self.told.point_of(even)
+        begin = np.concatenate([p[:n], PRESSURES[part], p[-2:]])
+        if part == "fall":
+            begin[2 : 2 + sizes.call(self.told.kind)] *= 1.0 + WIDER
+        return self._fit(part).likeliest_near(readings, begin)

@@ -1,0 +1,1 @@
+"""What an image shows: noise, what is touched, what hangs together, what recordings have taught."""

@@ -1,0 +1,110 @@
+"""Objects that press with their rim alone: what lies within it says nothing of their outline."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tactile_graph_likelihood.any_pad.pad_effects.from_frame import lines
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
+from tactile_graph_likelihood.single.element_terms import UNKNOWN
+from tactile_graph_likelihood.single.readings import Readings
+
+MANY_VOIDS = -1.1
+"""Log odds of a void, as fitted, below which nothing can be hollow."""
+
+MIDDLE = 0.25
+"""Of the shorter half size: elements so near the middle are looked at first, as they are few."""
+
+INSIDE = 0.6
+"""Sides of an element by which its middle lies within the outline, to be counted."""
+
+FEWEST, RIM = 12, 5
+"""Elements inside, and those of them that must be the rim's, for anything to be said."""
+
+SOME = 0.2
+"""Share of elements within a hollow that may read something."""
+
+SURE = 8.0
+"""Nats by which a hollow must explain what reads nothing better than voids all over do; of frames
+without one, one in a thousand has more."""
+
+MARGIN = 0.75
+"""Sides of an element by which it may lie beyond a hollow and still be partly over it."""
+
+
+def without_hollow(kind: int, readings: Readings, p: Values, voids: float) -> Readings | None:
+    """Return readings whose elements over an object's hollow are unknown, None where it has none.
+
+    Parameters
+    ----------
+    kind : int
+    readings : Readings
+    p : ndarray, shape (K,)
+        The outline of an even face.
+    voids : float
+        Log odds of a void, as fitted with it.
+
+    Notes
+    -----
+    Elements partly over a hollow bear less. Taken for elements of poor gain they draw the load of
+    covered ones down, and the rim outwards.
+    """
+    size = float(p[2]) if kind == DISC else min(float(p[2]), float(p[3]))
+    if voids < MANY_VOIDS or _bears_in_the_middle(readings, p, MIDDLE * size):
+        return None
+    inwards = _depth_cm(kind, readings, p)
+    side = float(readings.grid[3])
+    inside = (inwards < size - INSIDE * side) & (readings.states != UNKNOWN)
+    far, its = inwards[inside], readings.shows[inside]
+    n = len(far)
+    if n < FEWEST:
+        return None
+    order = far.argsort()
+    far, on = far[order], its[order]
+    within, shown = np.arange(1, n - RIM + 1), on.cumsum()[: n - RIM]
+    total = int(on.sum())
+    gain = _explained(shown, within) + _explained(total - shown, n - within)
+    gain -= _explained(np.array([total]), np.array([n]))[0]
+    gain[shown > SOME * within] = -math.inf
+    best = int(gain.argmax())
+    if not gain[best] > SURE:
+        return None
+    rim_cm = 0.5 * float(far[best] + far[best + 1])
+    over_it = inwards < rim_cm + MARGIN * side
+    rim = readings.without(over_it)
+    return rim if rim.touched >= FEWEST else None
+
+
+def _bears_in_the_middle(readings: Readings, p: Values, reach_cm: float) -> bool:
+    """Return whether elements so far around an outline's middle read too often for a hollow."""
+    left, top, pitch, side = readings.grid[:4].tolist()
+    inner = reach_cm - 0.5 * side
+    rows, columns = lines(p[1] - top, inner, pitch, side), lines(p[0] - left, inner, pitch, side)
+    near = readings.shows[rows, columns]
+    return bool(np.count_nonzero(near) > max(1.0, SOME * near.size))
+
+
+def _explained(shown: np.ndarray, of: np.ndarray) -> Values:
+    """Return the largest log likelihood of so many of some elements that show."""
+    share = np.clip(shown / of, 1e-9, 1.0 - 1e-9)
+    found: Values = shown * np.log(share) + (of - shown) * np.log1p(-share)
+    return found
+
+
+def _depth_cm(kind: int, readings: Readings, p: Values) -> Values:
+    """Return how far elements' middles lie from an outline's, as far as its shorter half size goes.
+
+    Along any direction it grows evenly from 0 to that size at the outline.
+    """
+    left, top, pitch, side = readings.grid[:4].tolist()
+    rows, columns = readings.states.shape
+    x = left + 0.5 * side + pitch * np.arange(columns) - p[0]
+    y = (top + 0.5 * side + pitch * np.arange(rows) - p[1])[:, None]
+    if kind == DISC:
+        return np.asarray(np.hypot(x, y))
+    cos, sin = math.cos(p[4]), math.sin(p[4])
+    shorter = min(float(p[2]), float(p[3]))
+    u, v = (x * cos - y * sin) * (shorter / p[2]), (x * sin + y * cos) * (shorter / p[3])
+    return np.asarray(np.maximum(np.abs(u), np.abs(v)) if kind == RECTANGLE else np.hypot(u, v))

@@ -1,0 +1,1 @@
+"""How certain an outline is said to be, and when it is flagged."""
