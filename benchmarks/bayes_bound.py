@@ -22,14 +22,14 @@ from numpy.typing import NDArray
 from tactile_graph import Circle, Frame, Rectangle, load
 from tactile_graph.compiled import compiled_as_is, warm_up
 from tactile_graph_likelihood.geometry.outlines import unpacked
+from tactile_graph_likelihood.single.density.log_posterior import log_likelihood, log_rest
+from tactile_graph_likelihood.single.density.problem import problem_of
 from tactile_graph_likelihood.single.footprint_of import (
     Footprint,
     FootprintDisc,
     FootprintRectangle,
 )
-from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.single.model import Model
-from tactile_graph_likelihood.single.problem import problem_of
 from tactile_graph_likelihood.single.readings import readings_of
 
 Values = NDArray[np.float64]

@@ -6,8 +6,12 @@ import numpy as np
 
 from helpers_likelihood import GRID, NOISE
 from tactile_graph_likelihood.geometry.outlines import DISC
-from tactile_graph_likelihood.several.joint_posterior import JointProblem, Outlines, add_outline
-from tactile_graph_likelihood.single.element_terms import OFF, ON
+from tactile_graph_likelihood.several.joint.joint_posterior import (
+    JointProblem,
+    Outlines,
+    add_outline,
+)
+from tactile_graph_likelihood.single.density.element_terms import OFF, ON
 
 PRIOR = np.array([0.0, 0.0, 20.5, 20.5, 1.0, 12.0, 1.0, 0.0, 0.0, 4.5, 1.5])
 DISCS = np.array([[6.0, 6.0, 2.6, 4.5, 0.0, 0.0], [11.4, 6.2, 2.6, 4.5, 0.0, 0.0]])

@@ -9,8 +9,8 @@ from tactile_graph.steps.signature import read_signature
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import packed
+from tactile_graph_likelihood.single.density.problem import problem_of
 from tactile_graph_likelihood.single.noise import Noise
-from tactile_graph_likelihood.single.problem import problem_of
 from tactile_graph_likelihood.single.readings import readings_of
 
 GRID = np.array([0.0, 0.0, 1.3, 1.0, 0.0, 0.0])

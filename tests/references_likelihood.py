@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import (
+from tactile_graph_likelihood.single.density.element_terms import (
     CONTRAST,
     HIGH,
     LEAST,

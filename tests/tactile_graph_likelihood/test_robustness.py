@@ -10,7 +10,7 @@ from helpers_likelihood import GRID, NOISE, drawn
 from tactile_graph.wires import Circle, Image
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, packed
-from tactile_graph_likelihood.single.goodness_of_fit import (
+from tactile_graph_likelihood.single.density.goodness_of_fit import (
     dome,
     neighbours_alike,
     standardised,

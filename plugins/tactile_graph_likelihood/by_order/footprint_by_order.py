@@ -18,7 +18,7 @@ from tactile_graph_likelihood.any_pad.observation.observed import gap_by
 from tactile_graph_likelihood.by_order.posterior import order_posterior
 from tactile_graph_likelihood.geometry.outlines import FREE, REGULAR
 from tactile_graph_likelihood.settings import DEFAULTS, FootprintSettings, Share
-from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN, States
+from tactile_graph_likelihood.single.density.element_terms import OFF, ON, UNKNOWN, States
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.model import EVERY

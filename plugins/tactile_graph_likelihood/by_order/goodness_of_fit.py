@@ -17,7 +17,7 @@ from tactile_graph_likelihood.by_order.likelihood import (
 )
 from tactile_graph_likelihood.geometry.covered import Box
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
-from tactile_graph_likelihood.single.element_terms import (
+from tactile_graph_likelihood.single.density.element_terms import (
     OFF,
     ON,
     SIGMA,
@@ -26,7 +26,7 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     States,
 )
-from tactile_graph_likelihood.single.goodness_of_fit import (
+from tactile_graph_likelihood.single.density.goodness_of_fit import (
     DENSITY,
     SEEN,
     SURE,
@@ -36,7 +36,7 @@ from tactile_graph_likelihood.single.goodness_of_fit import (
     standardised,
     trend,
 )
-from tactile_graph_likelihood.single.load_shares import shares_around
+from tactile_graph_likelihood.single.density.load_shares import shares_around
 
 MOST_TIED = 0.25
 """Share of the touched elements that, if they read the same, say nothing of a pattern."""

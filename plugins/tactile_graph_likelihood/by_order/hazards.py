@@ -9,7 +9,7 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import ROOT_TWO_PI, SPAN
+from tactile_graph_likelihood.single.density.element_terms import ROOT_TWO_PI, SPAN
 
 LOWEST, HIGHEST, STEP = -8.0, 16.0, 1.0 / 32.0
 """Of the table, in standard deviations; beyond, the rate is as at its ends."""

@@ -27,7 +27,7 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.by_order.hazards import hazard
 from tactile_graph_likelihood.geometry.covered import Box
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
-from tactile_graph_likelihood.single.element_terms import (
+from tactile_graph_likelihood.single.density.element_terms import (
     OFF,
     ON,
     SIGMA,
@@ -36,7 +36,7 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     States,
 )
-from tactile_graph_likelihood.single.load_shares import shares_around
+from tactile_graph_likelihood.single.density.load_shares import shares_around
 
 Order = NDArray[np.int64]
 

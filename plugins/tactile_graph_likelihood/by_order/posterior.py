@@ -17,12 +17,12 @@ from tactile_graph_likelihood.by_order.likelihood import (
 )
 from tactile_graph_likelihood.geometry.outline_prior import TURN, log_prior
 from tactile_graph_likelihood.geometry.outlines import DISC, Values, period, sizes, unknowns
-from tactile_graph_likelihood.single.element_terms import SIGMA, STRAYS, VOIDS
-from tactile_graph_likelihood.single.importance import weigh, weighted_moments
+from tactile_graph_likelihood.single.density.element_terms import SIGMA, STRAYS, VOIDS
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
-from tactile_graph_likelihood.single.sample import (
+from tactile_graph_likelihood.single.sampling.importance import weigh, weighted_moments
+from tactile_graph_likelihood.single.sampling.sample import (
     Draws,
     Plan,
     draw,

@@ -30,7 +30,7 @@ from tactile_graph_likelihood.single.any_pressure import (
     log_of,
     mixed,
 )
-from tactile_graph_likelihood.single.element_terms import SPAN
+from tactile_graph_likelihood.single.density.element_terms import SPAN
 from tactile_graph_likelihood.single.frame_fits import FrameFits
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.noise import level_of

@@ -17,7 +17,7 @@ from tactile_graph_likelihood.geometry.outlines import (
     sizes,
 )
 from tactile_graph_likelihood.known.known_sizes import KnownSizes
-from tactile_graph_likelihood.single.element_terms import LEAST, SIGMA, VOIDS
+from tactile_graph_likelihood.single.density.element_terms import LEAST, SIGMA, VOIDS
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.readings import Readings
 

@@ -22,7 +22,7 @@ from tactile_graph_likelihood.large_pads.covered_whole import (
     still_covered,
 )
 from tactile_graph_likelihood.large_pads.rim import Runs, drawn_as, rim_count, rim_shares, runs_of
-from tactile_graph_likelihood.single.element_terms import (
+from tactile_graph_likelihood.single.density.element_terms import (
     CONTRAST,
     LEAST,
     OFF,
@@ -31,7 +31,7 @@ from tactile_graph_likelihood.single.element_terms import (
     UNKNOWN,
     terms,
 )
-from tactile_graph_likelihood.single.information import (
+from tactile_graph_likelihood.single.density.information import (
     NO_SCORE,
     SLIVER,
     STEP,
@@ -47,8 +47,8 @@ from tactile_graph_likelihood.single.information import (
     summed,
     without_load,
 )
-from tactile_graph_likelihood.single.log_posterior import noise_at
-from tactile_graph_likelihood.single.problem import Places, Problem
+from tactile_graph_likelihood.single.density.log_posterior import noise_at
+from tactile_graph_likelihood.single.density.problem import Places, Problem
 
 SLACK = 2.0 * STEP  # of a pitch: no difference moves an edge further
 

@@ -12,7 +12,8 @@ from tactile_graph_likelihood.geometry.lengths import length
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.large_pads.solid import solid, typical_load
-from tactile_graph_likelihood.single.element_terms import (
+from tactile_graph_likelihood.single.climbs.search import moments
+from tactile_graph_likelihood.single.density.element_terms import (
     LEAST,
     OFF,
     ON,
@@ -22,8 +23,7 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     States,
 )
-from tactile_graph_likelihood.single.problem import Places, Problem
-from tactile_graph_likelihood.single.search import moments
+from tactile_graph_likelihood.single.density.problem import Places, Problem
 
 ACROSS, NARROW = 13.0, 5.0  # blocks that the touched region is long, and broad, at least
 WIDE = 3.6  # standard deviations in a width: rectangles have 3.5, discs 4

@@ -17,7 +17,7 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.covered import Box, window
 from tactile_graph_likelihood.geometry.outlines import Values, bounds, unknowns
 from tactile_graph_likelihood.large_pads.rim import Runs, drawn_as, runs_of
-from tactile_graph_likelihood.single.element_terms import (
+from tactile_graph_likelihood.single.density.element_terms import (
     CONTRAST,
     FOAM,
     LEAST,
@@ -28,9 +28,9 @@ from tactile_graph_likelihood.single.element_terms import (
     VOIDS,
     on_level,
 )
-from tactile_graph_likelihood.single.load_shares import is_even
-from tactile_graph_likelihood.single.log_posterior import noise_at
-from tactile_graph_likelihood.single.problem import Problem
+from tactile_graph_likelihood.single.density.load_shares import is_even
+from tactile_graph_likelihood.single.density.log_posterior import noise_at
+from tactile_graph_likelihood.single.density.problem import Problem
 
 BINS_A_SIGMA, REACH = 12, 12
 """Bins a standard deviation of ln gain, and deviations from the middle beyond which a reading has

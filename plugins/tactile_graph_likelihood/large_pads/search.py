@@ -17,18 +17,18 @@ from tactile_graph_likelihood.large_pads.covered_whole import (
     nothing_covered,
 )
 from tactile_graph_likelihood.large_pads.rim import drawn_as, runs_of
-from tactile_graph_likelihood.single.element_terms import FOAM, ON, UNKNOWN, VOIDS
-from tactile_graph_likelihood.single.evaluate import log_likelihood_at
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
-from tactile_graph_likelihood.single.log_posterior import log_likelihood, log_rest
-from tactile_graph_likelihood.single.maximise import ENOUGH, ROUGH, maximise, softened
-from tactile_graph_likelihood.single.problem import Problem, turned_as
-from tactile_graph_likelihood.single.search import (
+from tactile_graph_likelihood.single.climbs.maximise import ENOUGH, ROUGH, maximise, softened
+from tactile_graph_likelihood.single.climbs.search import (
     begins_softly,
     likeliest_start,
     looked_at,
     outline_of_moments,
 )
+from tactile_graph_likelihood.single.density.element_terms import FOAM, ON, UNKNOWN, VOIDS
+from tactile_graph_likelihood.single.density.evaluate import log_likelihood_at
+from tactile_graph_likelihood.single.density.goodness_of_fit import GoodnessOfFit
+from tactile_graph_likelihood.single.density.log_posterior import log_likelihood, log_rest
+from tactile_graph_likelihood.single.density.problem import Problem, turned_as
 
 TRIES = 24  # outlines tried around the moments' own, in attempts after the first
 STRIDE = 1.5  # pitches that an edge moves a round: rows it never felt lie beyond

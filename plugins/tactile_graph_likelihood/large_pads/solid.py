@@ -12,8 +12,15 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import LEAST, OFF, ON, SIGMA, STRAYS, States
-from tactile_graph_likelihood.single.problem import LARGE_PAD
+from tactile_graph_likelihood.single.density.element_terms import (
+    LEAST,
+    OFF,
+    ON,
+    SIGMA,
+    STRAYS,
+    States,
+)
+from tactile_graph_likelihood.single.density.problem import LARGE_PAD
 
 DENSE, LOOSE = 5, 3  # touched neighbours, of 8, of an element amid others, and of one at an edge
 FEWEST = 8  # such elements, for a typical load

@@ -11,7 +11,13 @@ import math
 import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import OFF, ON, ROOT_TWO_PI, SPAN, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import (
+    OFF,
+    ON,
+    ROOT_TWO_PI,
+    SPAN,
+    UNKNOWN,
+)
 from tactile_graph_likelihood.single.readings import Readings
 
 ODD = 0.01

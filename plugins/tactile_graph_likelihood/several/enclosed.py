@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph_likelihood.geometry.pieces import components
+from tactile_graph_likelihood.several.joint.scene import laid
 from tactile_graph_likelihood.several.pad import Found, OnPad
-from tactile_graph_likelihood.several.scene import laid
-from tactile_graph_likelihood.single.element_terms import ON
+from tactile_graph_likelihood.single.density.element_terms import ON
 
 MIDDLE = 3
 """Elements of a hollow: hardly ever are as many left bare between objects that touch."""

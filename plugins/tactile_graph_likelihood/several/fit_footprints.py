@@ -12,7 +12,7 @@ from tactile_graph.steps import Spread
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE, REGULAR
 from tactile_graph_likelihood.settings import ON_PAD, FootprintSettings, Load
-from tactile_graph_likelihood.several.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.joint.joint_posterior import JointProblem
 from tactile_graph_likelihood.several.pad import Expected, OnPad, likeliest
 from tactile_graph_likelihood.several.posteriors import posteriors
 from tactile_graph_likelihood.single.likely import Likely, likely

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from tactile_graph_likelihood.any_pad.pad_effects.gap import SLOPE, Tried
-from tactile_graph_likelihood.several.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.joint.joint_posterior import JointProblem
 from tactile_graph_likelihood.several.pad import OnPad
 from tactile_graph_likelihood.single.readings import Gap, Readings, is_row
 

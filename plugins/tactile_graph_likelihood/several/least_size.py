@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from tactile_graph_likelihood.geometry.outline_prior import SMALLEST
 from tactile_graph_likelihood.geometry.outlines import sizes
-from tactile_graph_likelihood.several.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.joint.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.joint.scene import Configuration
 from tactile_graph_likelihood.several.pad import OnPad
-from tactile_graph_likelihood.several.scene import Configuration
 from tactile_graph_likelihood.single.model import SMALLEST_PITCHES
 
 NEAR = 1.2

@@ -40,12 +40,12 @@ from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.enclosed import enclose
 from tactile_graph_likelihood.several.fit_footprints import Footprints, Kind, SeveralSettings
 from tactile_graph_likelihood.several.gap_of_all import sized
-from tactile_graph_likelihood.several.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.joint.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.joint.scene import laid
 from tactile_graph_likelihood.several.least_size import freed
 from tactile_graph_likelihood.several.pad import LEAST_ADJACENT, OnPad, likeliest
 from tactile_graph_likelihood.several.posteriors import goodness_of_load, posteriors
-from tactile_graph_likelihood.several.scene import laid
-from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import ON, UNKNOWN
 from tactile_graph_likelihood.single.likely import likely
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, LEAST_VOIDS, MOST_VOIDS, Noise
 from tactile_graph_likelihood.single.readings import Readings, is_row

@@ -15,17 +15,17 @@ from tactile_graph.wires import Shape
 from tactile_graph_likelihood.any_pad.pad_effects.gap import narrower
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, Values, packed, unknowns
 from tactile_graph_likelihood.geometry.pieces import components
-from tactile_graph_likelihood.several.joint_posterior import (
+from tactile_graph_likelihood.several.beginnings.ladder import LEAST_PIECE
+from tactile_graph_likelihood.several.joint.joint_posterior import (
     MIDDLE,
     WIDTH,
     JointProblem,
 )
-from tactile_graph_likelihood.several.ladder import LEAST_PIECE
-from tactile_graph_likelihood.several.scene import Configuration, joined
+from tactile_graph_likelihood.several.joint.scene import Configuration, joined
 from tactile_graph_likelihood.several.search import Search
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN
+from tactile_graph_likelihood.single.climbs.search import LIGHT_EDGE
+from tactile_graph_likelihood.single.density.element_terms import ON, OVER, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
-from tactile_graph_likelihood.single.search import LIGHT_EDGE
 
 REACH = 2
 """Cells within which touched elements may be one object's."""

@@ -12,12 +12,12 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.geometry.linear import cholesky, inverted
 from tactile_graph_likelihood.geometry.outlines import Values, sizes
-from tactile_graph_likelihood.several.joint_posterior import WIDTH, JointProblem
-from tactile_graph_likelihood.several.kinds import fits_of_kinds
+from tactile_graph_likelihood.several.joint.joint_posterior import WIDTH, JointProblem
+from tactile_graph_likelihood.several.joint.kinds import fits_of_kinds
+from tactile_graph_likelihood.several.joint.scene import Configuration, Sampled, area_of, laid
 from tactile_graph_likelihood.several.pad import TEMPER, Found, OnPad
-from tactile_graph_likelihood.several.scene import Configuration, Sampled, area_of, laid
 from tactile_graph_likelihood.several.search import Search
-from tactile_graph_likelihood.single.goodness_of_fit import neighbours_of, unexplained
+from tactile_graph_likelihood.single.density.goodness_of_fit import neighbours_of, unexplained
 from tactile_graph_likelihood.single.posterior import Posterior
 
 NEGLIGIBLE = 0.02

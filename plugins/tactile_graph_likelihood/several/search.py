@@ -10,20 +10,20 @@ import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components
-from tactile_graph_likelihood.several.alike import alikeness_of
-from tactile_graph_likelihood.several.joint_posterior import JointProblem
-from tactile_graph_likelihood.several.kinds import SOFT, draw
-from tactile_graph_likelihood.several.ladder import (
+from tactile_graph_likelihood.several.beginnings.ladder import (
     Ladder,
     Mask,
     Sketches,
     dilated,
     neighbours,
 )
-from tactile_graph_likelihood.several.scene import Configuration, area_of, joined
+from tactile_graph_likelihood.several.joint.alike import alikeness_of
+from tactile_graph_likelihood.several.joint.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.joint.kinds import SOFT, draw
+from tactile_graph_likelihood.several.joint.scene import Configuration, area_of, joined
+from tactile_graph_likelihood.several.joint.whose import USUAL, whose_by_outlines
 from tactile_graph_likelihood.several.sides import sides_moved
-from tactile_graph_likelihood.several.whose import USUAL, whose_by_outlines
-from tactile_graph_likelihood.single.problem import Places
+from tactile_graph_likelihood.single.density.problem import Places
 
 Place = tuple[tuple[int, ...], Mask, float]
 """Numbers of outlines, which elements are theirs, and what is unexplained there, in nats."""

@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values, sizes
-from tactile_graph_likelihood.several.joint_posterior import JointProblem
-from tactile_graph_likelihood.several.maximise_jointly import likeliest_of
-from tactile_graph_likelihood.several.scene import Configuration
+from tactile_graph_likelihood.several.joint.joint_posterior import JointProblem
+from tactile_graph_likelihood.several.joint.maximise_jointly import likeliest_of
+from tactile_graph_likelihood.several.joint.scene import Configuration
 
 TURNS = 4
 """Sides that may be moved, one after another."""

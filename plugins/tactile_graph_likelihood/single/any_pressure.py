@@ -14,12 +14,12 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values, period, sizes
 from tactile_graph_likelihood.single.changed import changed
-from tactile_graph_likelihood.single.goodness_of_fit import GoodnessOfFit
-from tactile_graph_likelihood.single.importance import weighted_moments
+from tactile_graph_likelihood.single.density.goodness_of_fit import GoodnessOfFit
 from tactile_graph_likelihood.single.model import Belief, Model, Start
 from tactile_graph_likelihood.single.noise import FALL_GUESSED, GUESSED_FOAM
 from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_likelihood.single.sampling.importance import weighted_moments
 
 LEAN, ROUND = 0.15, 0.15
 """Probability, before a frame is read, that a face leans; that its load falls to the rim, be it

@@ -30,17 +30,8 @@ from tactile_graph_likelihood.large_pads.search import (
     settled,
 )
 from tactile_graph_likelihood.large_pads.solid import least_shown
-from tactile_graph_likelihood.single.element_terms import LEAST, OFF, ON, States
-from tactile_graph_likelihood.single.even_points import even_points
-from tactile_graph_likelihood.single.goodness_of_fit import NO_FIT, GoodnessOfFit, goodness_of_fit
-from tactile_graph_likelihood.single.importance import normal_points, weighted_moments
-from tactile_graph_likelihood.single.maximise import Mode
-from tactile_graph_likelihood.single.noise import Noise, NoiseTaken
-from tactile_graph_likelihood.single.posterior import Posterior
-from tactile_graph_likelihood.single.problem import LARGE_PAD, Problem
-from tactile_graph_likelihood.single.readings import Readings, is_row, readings_of, size_of
-from tactile_graph_likelihood.single.sample import Sample, log_volume, sample_around
-from tactile_graph_likelihood.single.search import (
+from tactile_graph_likelihood.single.climbs.maximise import Mode
+from tactile_graph_likelihood.single.climbs.search import (
     ATTEMPTS,
     NEAR,
     POOR,
@@ -49,6 +40,19 @@ from tactile_graph_likelihood.single.search import (
     attempted,
     moments,
 )
+from tactile_graph_likelihood.single.density.element_terms import LEAST, OFF, ON, States
+from tactile_graph_likelihood.single.density.goodness_of_fit import (
+    NO_FIT,
+    GoodnessOfFit,
+    goodness_of_fit,
+)
+from tactile_graph_likelihood.single.density.problem import LARGE_PAD, Problem
+from tactile_graph_likelihood.single.noise import Noise, NoiseTaken
+from tactile_graph_likelihood.single.posterior import Posterior
+from tactile_graph_likelihood.single.readings import Readings, is_row, readings_of, size_of
+from tactile_graph_likelihood.single.sampling.even_points import even_points
+from tactile_graph_likelihood.single.sampling.importance import normal_points, weighted_moments
+from tactile_graph_likelihood.single.sampling.sample import Sample, log_volume, sample_around
 
 Attempted = Kernel[..., tuple[float, float, GoodnessOfFit]]
 

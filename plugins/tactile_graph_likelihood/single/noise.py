@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import (
+from tactile_graph_likelihood.single.density.element_terms import (
     CONTRAST,
     FALL,
     FOAM,
@@ -18,7 +18,7 @@ from tactile_graph_likelihood.single.element_terms import (
     SIGMA,
     VOIDS,
 )
-from tactile_graph_likelihood.single.problem import Places
+from tactile_graph_likelihood.single.density.problem import Places
 from tactile_graph_pads.pad import Pad
 
 ESTIMATED = {

@@ -14,8 +14,15 @@ from tactile_graph.steps.rules import require_square
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.large_pads.solid import typical_load
-from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER, UNKNOWN, States
-from tactile_graph_likelihood.single.problem import LARGE_PAD
+from tactile_graph_likelihood.single.density.element_terms import (
+    OFF,
+    ON,
+    OVER,
+    UNDER,
+    UNKNOWN,
+    States,
+)
+from tactile_graph_likelihood.single.density.problem import LARGE_PAD
 
 FAINT = 0.015
 """Share of a loaded element's reading below which another counts as nothing. A column of a divider

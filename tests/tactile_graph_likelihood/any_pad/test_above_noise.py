@@ -10,7 +10,7 @@ from tactile_graph_filters.readings.ordered import in_order
 from tactile_graph_likelihood.any_pad.above_noise import AboveNoise
 from tactile_graph_likelihood.any_pad.observation.observed import observed
 from tactile_graph_likelihood.any_pad.observation.rising import EVERY, SHOWS, risen, rising
-from tactile_graph_likelihood.single.element_terms import UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import UNKNOWN
 from tactile_graph_pads.pad import load_pad
 
 PAD = load_pad("thesis")

@@ -9,7 +9,7 @@ from tactile_graph import Frame, load
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.locate_contacts import LocateContacts, alone
 from tactile_graph_likelihood.any_pad.observation.observed import observed
-from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import ON, UNKNOWN
 from tactile_graph_pads.pad import load_pad
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")

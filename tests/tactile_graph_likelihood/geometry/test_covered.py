@@ -10,7 +10,7 @@ from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
 from tactile_graph_likelihood.geometry.covered import covered, window
 from tactile_graph_likelihood.geometry.disc_areas import disc_areas
 from tactile_graph_likelihood.geometry.outlines import bounds, packed
-from tactile_graph_likelihood.single.load_shares import blurred
+from tactile_graph_likelihood.single.density.load_shares import blurred
 from tactile_graph_pads.contact import spread
 from tactile_graph_pads.coverage.coverage import coverage_cm2
 from tactile_graph_pads.geometry import Geometry

@@ -5,7 +5,7 @@ import pytest
 
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.large_pads.coarse import largest_piece
-from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import OFF, ON, UNKNOWN
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")
 

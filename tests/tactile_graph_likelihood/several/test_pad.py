@@ -8,7 +8,7 @@ import pytest
 from tactile_graph.wires import Circle, Rectangle
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.several.pad import Expected, chosen, parts_of, split
-from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import OFF, ON, OVER, UNKNOWN
 from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.readings import Readings
 

@@ -5,12 +5,12 @@ import pytest
 
 from helpers_joint import DISCS, problem_of_discs
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE
-from tactile_graph_likelihood.several.joint_posterior import Outlines, gain, log_rest_of
-from tactile_graph_likelihood.several.maximise_jointly import likeliest_of
-from tactile_graph_likelihood.several.scene import Configuration, laid
+from tactile_graph_likelihood.several.joint.joint_posterior import Outlines, gain, log_rest_of
+from tactile_graph_likelihood.several.joint.maximise_jointly import likeliest_of
+from tactile_graph_likelihood.several.joint.scene import Configuration, laid
+from tactile_graph_likelihood.several.joint.whose import ODD, USUAL
 from tactile_graph_likelihood.several.search import SPLIT, SURPLUS, Search, by_chance, split_from
-from tactile_graph_likelihood.several.whose import ODD, USUAL
-from tactile_graph_likelihood.single.element_terms import OFF, ON
+from tactile_graph_likelihood.single.density.element_terms import OFF, ON
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tactile_graph_likelihood.several.ladder import dilated, left_near, neighbours
+from tactile_graph_likelihood.several.beginnings.ladder import dilated, left_near, neighbours
 from tactile_graph_likelihood.several.posteriors import spread_by, widened
 
 pytestmark = pytest.mark.usefixtures("plain_kernels")

@@ -15,9 +15,9 @@ from tactile_graph_likelihood.geometry.outlines import (
     as_ellipse_of_disc,
 )
 from tactile_graph_likelihood.single.any_pressure import EVEN
+from tactile_graph_likelihood.single.climbs.search import POOR, moments
 from tactile_graph_likelihood.single.model import Likeliest
 from tactile_graph_likelihood.single.readings import Readings
-from tactile_graph_likelihood.single.search import POOR, moments
 
 ROUND = 0.6
 """Variance of touched elements across over along from which on a disc is looked at first."""

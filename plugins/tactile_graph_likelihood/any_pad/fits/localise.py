@@ -48,11 +48,11 @@ from tactile_graph_likelihood.single.any_pressure import (
     asked_by,
 )
 from tactile_graph_likelihood.single.changed import changed
-from tactile_graph_likelihood.single.element_terms import UNKNOWN
+from tactile_graph_likelihood.single.climbs.search import SAME
+from tactile_graph_likelihood.single.density.element_terms import UNKNOWN
 from tactile_graph_likelihood.single.model import EVERY, MORE, SECOND, Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
 from tactile_graph_likelihood.single.readings import Readings
-from tactile_graph_likelihood.single.search import SAME
 
 FAINT = Pattern(1.0, 0.4, 2.5)
 """From which on another pressure is worth its time; where a quick answer will do, it is `CLEAR`."""

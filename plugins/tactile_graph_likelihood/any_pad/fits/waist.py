@@ -14,9 +14,9 @@ from tactile_graph.compiled import compiled_as_is, compiled_later
 from tactile_graph_likelihood.geometry.covered import Box, covered, window
 from tactile_graph_likelihood.geometry.outlines import DISC, OVAL, Values
 from tactile_graph_likelihood.geometry.oval import as_ellipse
-from tactile_graph_likelihood.single.element_terms import CONTRAST, ON, terms
-from tactile_graph_likelihood.single.log_posterior import log_likelihood, noise_at
-from tactile_graph_likelihood.single.problem import Problem
+from tactile_graph_likelihood.single.density.element_terms import CONTRAST, ON, terms
+from tactile_graph_likelihood.single.density.log_posterior import log_likelihood, noise_at
+from tactile_graph_likelihood.single.density.problem import Problem
 
 LONG, LONGEST = 1.35, 3.0
 """Length over breadth between which an outline may be two discs: around touching ones it is 1.4 to

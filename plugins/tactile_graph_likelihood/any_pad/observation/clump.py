@@ -6,7 +6,7 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph_likelihood.geometry.pieces import components
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN, States
+from tactile_graph_likelihood.single.density.element_terms import ON, OVER, UNKNOWN, States
 from tactile_graph_likelihood.single.readings import Readings
 
 NEAR = 2

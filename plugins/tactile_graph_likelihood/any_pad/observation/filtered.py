@@ -9,7 +9,7 @@ import numpy as np
 from tactile_graph.compiled import compiled_later
 from tactile_graph_likelihood.any_pad.observation.shown import Cells
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNDER, States
+from tactile_graph_likelihood.single.density.element_terms import ON, OVER, UNDER, States
 
 FEWEST = 8
 """Places at which noise is compared, and pairs of touched elements, that tell anything."""

@@ -23,7 +23,7 @@ from tactile_graph_likelihood.any_pad.observation.shown import (
     told_of_elements,
 )
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import OFF, ON, UNDER, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import OFF, ON, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.readings import (
     MANY,
     SOME,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNDER, UNKNOWN, States
+from tactile_graph_likelihood.single.density.element_terms import ON, OVER, UNDER, UNKNOWN, States
 from tactile_graph_pads.law import load_kernel
 
 Cells: TypeAlias = NDArray[np.bool_]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.any_pad.pad_effects.spread_loads import shares_of, spread, unspread
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNDER, States
+from tactile_graph_likelihood.single.density.element_terms import ON, OVER, UNDER, States
 
 FIRST, MOST = 0.4, 0.7
 """Widths of foam, in cells, that are looked for; of less a bare pad's readings may be, too."""

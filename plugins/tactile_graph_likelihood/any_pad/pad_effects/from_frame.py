@@ -15,7 +15,7 @@ from tactile_graph_likelihood.any_pad.pad_effects.turn_on import (
 )
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
 from tactile_graph_likelihood.single.changed import changed
-from tactile_graph_likelihood.single.element_terms import CONTRAST, ON, OVER, States
+from tactile_graph_likelihood.single.density.element_terms import CONTRAST, ON, OVER, States
 from tactile_graph_likelihood.single.model import Model
 from tactile_graph_likelihood.single.noise import SPREADS, Noise
 from tactile_graph_likelihood.single.readings import Readings

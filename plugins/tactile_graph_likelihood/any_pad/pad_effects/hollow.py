@@ -8,7 +8,7 @@ import numpy as np
 
 from tactile_graph_likelihood.any_pad.pad_effects.from_frame import lines
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
-from tactile_graph_likelihood.single.element_terms import UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
 
 MANY_VOIDS = -1.1

@@ -11,7 +11,7 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.load_shares import foam_weights
+from tactile_graph_likelihood.single.density.load_shares import foam_weights
 
 FAINTEST = 1e-5
 """Share of a load that foam need not carry farther."""

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.any_pad.pad_effects.foam_undone import FIRST, MOST, undone, widest
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import (
+from tactile_graph_likelihood.single.density.element_terms import (
     ON,
     OVER,
     UNDER,

@@ -11,7 +11,7 @@ import numpy as np
 from tactile_graph.compiled import compiled_as_is, compiled_later
 from tactile_graph_likelihood.any_pad.observation.shown import GAPS, SPACED
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import ON, States
+from tactile_graph_likelihood.single.density.element_terms import ON, States
 from tactile_graph_likelihood.single.readings import Readings
 
 FEW = 2

@@ -10,7 +10,7 @@ from tactile_graph_likelihood.any_pad.pad_effects.from_frame import NORMAL
 from tactile_graph_likelihood.any_pad.pad_effects.gap import sized
 from tactile_graph_likelihood.geometry.covered import covered
 from tactile_graph_likelihood.geometry.outlines import DISC, unknowns
-from tactile_graph_likelihood.single.element_terms import HIGH, ON, OVER, SPAN, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import HIGH, ON, OVER, SPAN, UNKNOWN
 from tactile_graph_likelihood.single.model import Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA
 from tactile_graph_likelihood.single.readings import Readings

@@ -16,7 +16,7 @@ from tactile_graph_likelihood.geometry import outlines
 from tactile_graph_likelihood.geometry.covered import Box, window
 from tactile_graph_likelihood.geometry.linear import cholesky, squared_length
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNKNOWN, States
+from tactile_graph_likelihood.single.density.element_terms import ON, OVER, UNKNOWN, States
 
 FEWEST, MISSED = 12, 4
 """Elements whose middles lie inside, and those that an outline misses, for anything to be said."""

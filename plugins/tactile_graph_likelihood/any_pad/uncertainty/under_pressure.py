@@ -21,8 +21,8 @@ from tactile_graph_likelihood.any_pad.uncertainty.posterior import inflated
 from tactile_graph_likelihood.geometry.outlines import DISC, Values
 from tactile_graph_likelihood.single.any_pressure import EVEN
 from tactile_graph_likelihood.single.changed import changed
-from tactile_graph_likelihood.single.element_terms import CONTRAST
-from tactile_graph_likelihood.single.maximise import Mode
+from tactile_graph_likelihood.single.climbs.maximise import Mode
+from tactile_graph_likelihood.single.density.element_terms import CONTRAST
 from tactile_graph_likelihood.single.model import Likeliest
 from tactile_graph_likelihood.single.noise import SPREADS
 from tactile_graph_likelihood.single.posterior import Posterior

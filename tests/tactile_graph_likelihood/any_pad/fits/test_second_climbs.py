@@ -15,7 +15,7 @@ from tactile_graph_likelihood.any_pad.observation.observed import observed
 from tactile_graph_likelihood.any_pad.uncertainty.around import posterior_around
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE
 from tactile_graph_likelihood.single.any_pressure import EVEN
-from tactile_graph_likelihood.single.element_terms import OFF, ON, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import OFF, ON, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
 
 sys.path.insert(0, str(Path(__file__).parents[4] / "benchmarks"))

@@ -12,9 +12,9 @@ from tactile_graph_likelihood.any_pad.fits.waist import gain_by_two
 from tactile_graph_likelihood.any_pad.locate import LocateEllipse, LocateRectangle
 from tactile_graph_likelihood.geometry.outlines import ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.single.changed import changed
-from tactile_graph_likelihood.single.element_terms import ON, UNDER
+from tactile_graph_likelihood.single.density.element_terms import ON, UNDER
+from tactile_graph_likelihood.single.density.problem import problem_of
 from tactile_graph_likelihood.single.noise import Noise
-from tactile_graph_likelihood.single.problem import problem_of
 
 FINE = (np.arange(320) + 0.5) / 20.0
 RADIUS, TURN = 2.4, 0.4

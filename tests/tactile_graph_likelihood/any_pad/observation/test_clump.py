@@ -7,7 +7,7 @@ from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateEllipse
 from tactile_graph_likelihood.any_pad.observation.clump import clump_of, is_in_parts
 from tactile_graph_likelihood.single.changed import changed
-from tactile_graph_likelihood.single.element_terms import ON, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import ON, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
 
 

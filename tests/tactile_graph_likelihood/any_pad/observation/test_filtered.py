@@ -17,7 +17,7 @@ from tactile_graph_likelihood.any_pad.observation.filtered import (
 )
 from tactile_graph_likelihood.any_pad.observation.observed import observed
 from tactile_graph_likelihood.any_pad.uncertainty.widened import CENTRE_STD, SIZE_STD, as_filtered
-from tactile_graph_likelihood.single.element_terms import ON, UNDER
+from tactile_graph_likelihood.single.density.element_terms import ON, UNDER
 from tactile_graph_pads.pad import load_pad
 
 sys.path.insert(0, str(Path(__file__).parents[4] / "benchmarks"))

@@ -26,7 +26,7 @@ from tactile_graph_likelihood.any_pad.observation.learned_pad import (
 )
 from tactile_graph_likelihood.any_pad.observation.observed import observed
 from tactile_graph_likelihood.geometry.outlines import DISC
-from tactile_graph_likelihood.single.element_terms import UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import UNKNOWN
 from tactile_graph_pads.learned import Elements, write_elements
 from tactile_graph_pads.learning.patch import N_PLACE, PatchKind
 from tactile_graph_pads.learning.place import PlaceCorrection, write_place

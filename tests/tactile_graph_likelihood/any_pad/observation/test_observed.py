@@ -13,7 +13,7 @@ from tactile_graph_likelihood.any_pad.above_noise import AboveNoise
 from tactile_graph_likelihood.any_pad.observation.observed import observed, uniform
 from tactile_graph_likelihood.any_pad.observation.rising import together
 from tactile_graph_likelihood.any_pad.observation.shown import ceiling_of, least_that_shows
-from tactile_graph_likelihood.single.element_terms import OFF, ON, OVER, UNDER, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import OFF, ON, OVER, UNDER, UNKNOWN
 from tactile_graph_pads.pad import load_pad
 
 PAD = load_pad("thesis")

@@ -13,7 +13,7 @@ from tactile_graph_likelihood.any_pad.observation.shown import (
     shown_loads,
     told_of_elements,
 )
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNDER, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import ON, OVER, UNDER, UNKNOWN
 from tactile_graph_pads.pad import load_pad
 
 PAD = load_pad("thesis")

@@ -7,7 +7,7 @@ import pytest
 
 from tactile_graph_likelihood.any_pad.pad_effects.hollow import without_hollow
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
-from tactile_graph_likelihood.single.element_terms import ON, UNDER, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import ON, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
 
 GRID = np.array([0.0, 0.0, 1.3, 1.0, 0.0, 0.0])

@@ -15,7 +15,7 @@ from tactile_graph_likelihood.any_pad.pad_effects.foam_undone import FIRST, wide
 from tactile_graph_likelihood.any_pad.pad_effects.spread_loads import shares_of, spread, unspread
 from tactile_graph_likelihood.any_pad.pad_effects.through_foam import has_no_foam, without_foam
 from tactile_graph_likelihood.settings import LocateSettings
-from tactile_graph_likelihood.single.element_terms import ON, OVER, UNDER, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import ON, OVER, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
 
 GRID = np.array([0.0, 0.0, 1.3, 1.0, 0.0, 0.0])

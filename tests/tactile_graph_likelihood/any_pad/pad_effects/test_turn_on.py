@@ -17,7 +17,7 @@ from tactile_graph_likelihood.any_pad.pad_effects.turn_on import (
     straightened,
     unbent,
 )
-from tactile_graph_likelihood.single.element_terms import CONTRAST, ON, UNDER
+from tactile_graph_likelihood.single.density.element_terms import CONTRAST, ON, UNDER
 from tactile_graph_likelihood.single.noise import SPREADS, Noise
 from tactile_graph_pads.pad import Pad, load_pad
 

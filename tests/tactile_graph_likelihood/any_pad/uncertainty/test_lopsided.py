@@ -11,7 +11,7 @@ from tactile_graph_likelihood.any_pad.locate import LocateDisc, LocateRectangle
 from tactile_graph_likelihood.any_pad.uncertainty.lopsided import lopsided
 from tactile_graph_likelihood.any_pad.uncertainty.posterior import LOPSIDED
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
-from tactile_graph_likelihood.single.element_terms import ON, UNDER, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import ON, UNDER, UNKNOWN
 
 GRID = np.array([0.0, 0.0, 1.3, 1.0, 0.0, 0.0])
 MIDDLE = 0.5 + 1.3 * np.arange(16)

@@ -1,0 +1,1 @@
+"""Where the search for several outlines begins: touched elements in as many sets."""

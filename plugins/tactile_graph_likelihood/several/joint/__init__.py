@@ -1,0 +1,1 @@
+"""Outlines whose loads add up: their joint density, mode, evidence and posteriors."""

@@ -1,0 +1,1 @@
+"""How probable an outline is, given what the elements read: density, slopes, information."""

@@ -1,0 +1,1 @@
+"""The posterior around its mode: few points drawn evenly, and their weights."""
