@@ -28,6 +28,12 @@ outputs: [circle]
 """
 
 
+@pytest.fixture(autouse=True)
+def quiet(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A machine on which nothing is said of other programs."""
+    monkeypatch.setattr("tactile_graph_compare.run.crowded.SCHEDULED", tmp_path / "none")
+
+
 @pytest.fixture
 def hand_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A folder with ``next.yaml``, which evolves from the plugin's ``discs``."""

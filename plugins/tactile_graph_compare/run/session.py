@@ -15,6 +15,7 @@ from tactile_graph.inspect import Runner, check_frame
 from tactile_graph.plugins.registry import selected
 from tactile_graph.wires.frame import Frame
 from tactile_graph_compare.run.agreement_log import AgreementLog
+from tactile_graph_compare.run.crowded import Waiting
 from tactile_graph_compare.run.frame_choice import FrameChooser, Held, Seen, Told
 from tactile_graph_compare.run.logs import MergedLog, Noted, VariantLog
 from tactile_graph_compare.run.stories import as_sent, stories_of_all
@@ -73,6 +74,7 @@ class Session:
         self.reference = reference
         self.chooser = chooser or FrameChooser()
         self.begin()
+        self.waiting: Waiting | None = Waiting()
         self.started = time.perf_counter()
         self.last = self.started
 
@@ -208,6 +210,7 @@ class Session:
     def join(self, part: Part) -> None:
         """Note what was noted elsewhere of the frames that come next."""
         start = self.n
+        self.waiting = None  # they were timed elsewhere
         for log, noted in zip(self.logs, part.logs, strict=True):
             log.join(noted)
         self.agreement.join(part.agreement, start)

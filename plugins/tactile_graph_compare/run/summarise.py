@@ -15,6 +15,7 @@ from tactile_graph_compare.records.comparison import Comparison, Evolution, Vari
 from tactile_graph_compare.records.graph import Saving, Timeline
 from tactile_graph_compare.records.scores import Difference, Score, TimeDifference
 from tactile_graph_compare.run.chosen_frames import chosen_frames
+from tactile_graph_compare.run.crowded import crowded
 from tactile_graph_compare.run.logs import VariantLog
 from tactile_graph_compare.run.merged_graph import merged_graph
 from tactile_graph_compare.run.session import Session
@@ -88,7 +89,7 @@ def summarise(
         provenance=_provenance(session, report or Report(), interrupted, start),
         seconds=session.last - session.started,
         interrupted=interrupted,
-        notes=(*notes, *_few_placements(session)),
+        notes=(*notes, *_few_placements(session), *crowded(session.waiting)),
         n_left_out=n_left_out,
     )
 

@@ -124,8 +124,9 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
     """
     from tactile_graph.cli.interrupt import Interrupts
     from tactile_graph.cli.output.progress import Bar
-    from tactile_graph.cli.terminal import console
+    from tactile_graph.cli.terminal import console, remark
     from tactile_graph.steps.injected import Report
+    from tactile_graph_compare.run.crowded import Waiting, crowded
     from tactile_graph_tune.apart import check_recordings
     from tactile_graph_tune.commands.making import frames_of, how_made
     from tactile_graph_tune.request import Request, parse_free
@@ -148,7 +149,7 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
         asked.rounds, asked.seed, shares, place_asked(asked.workers, asked.on),
         frames_of(opened, recordings, asked.held_out, asked.seed),
     )  # fmt: skip
-    report, of_apart = Report(), Report()
+    report, of_apart, waiting = Report(), Report(), Waiting()
     bar = Bar(console(stderr=True), "tune")
     try:
         with Interrupts():
@@ -161,6 +162,8 @@ def tune(pipeline: str | None, recordings: tuple[str, ...], span: Span, **option
     finally:
         bar.stop()
     _show(found)
+    for line in crowded(waiting) if request.place is None else ():
+        remark(line)
     if request.place is not None:
         told = f"of the table {side_by_side(request.place)}"
         console().print(told, style="dim", soft_wrap=True)
