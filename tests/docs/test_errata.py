@@ -23,6 +23,7 @@ from tactile_graph_fitters.orientation.rotate_points import rotate_points
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import prepare
 from tactile_graph_mrf.energy.total import energy
+from tactile_graph_pads.circuits import Divider, Feedback
 from tactile_graph_pads.pad import load_pad
 
 PAGE = Path(__file__).parents[2] / "docs" / "errata.md"
@@ -39,6 +40,22 @@ def test_two_loads_of_the_thesis_make_the_exponent() -> None:
     law = load_pad("thesis").law
     assert f"exponent of {exponent:.2f}".replace("-", "−") in row("2.1.1, 2.3.2")
     assert law.resistance_at(2000.0) / law.resistance_at(100.0) == pytest.approx(1 / 80, rel=1e-3)
+
+
+def test_the_converter_of_2_2_2_and_the_divider_of_its_results() -> None:
+    siemens = np.zeros((16, 1))
+    siemens[0, 0] = 1.0 / 80e3
+    lone, volts = siemens.copy(), {}
+    for circuit in (Divider(bias_ohm=33e3), Feedback(bias_ohm=33e3)):
+        siemens[1:9] = 0.0
+        volts[circuit.kind] = [5.0 * circuit.ratio(lone)[0, 0]]
+        siemens[1:9] = 1.0 / 80e3
+        volts[circuit.kind].append(5.0 * circuit.ratio(siemens)[0, 0])
+    assert volts["feedback"] == pytest.approx([2.0625, 2.0625])
+    assert volts["divider"] == pytest.approx([1.46, 0.438], rel=1e-2)
+    for value in ("2.06 V", "1.46 V", "165 V"):
+        assert value in row("2.2.2, 2.3.1")
+    assert 5.0 * 33e3 / 1e3 == 165.0
 
 
 def test_an_opening_takes_the_turned_element() -> None:
