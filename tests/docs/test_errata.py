@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tactile_graph import Image, Mask, Points
+from tactile_graph import Image, Mask, Points, load
 from tactile_graph_classifiers.distances.minimum_distance import MinimumDistance
 from tactile_graph_classifiers.measuring.measurements import Measurements
+from tactile_graph_filters.images.low_pass import LowPass
+from tactile_graph_filters.morphology.and_compare import and_compare
 from tactile_graph_filters.morphology.dilate import Dilate
 from tactile_graph_filters.morphology.erode import Erode
 from tactile_graph_filters.morphology.open import Open
@@ -121,6 +123,20 @@ def test_d_8_is_the_polar_distance_which_the_y_axis_has_too() -> None:
     found = fit_ellipse_origin(on_axes, Orientation(0.0, 0.0, 0.0, 0.6, 0.0, False))
     assert (found.semi_major_cm, found.semi_minor_cm) == pytest.approx((5.0, 2.0), rel=1e-6)
     assert x * x * b * b + y * y * a * a != 1.0  # D.3: its right side is a² b²
+
+
+def test_a_lone_point_in_the_corner_is_gone_above_a_quarter_only() -> None:
+    on = np.zeros((16, 16), bool)
+    on[0, 0] = True
+    corner, edge = Mask(on), np.ones((16, 16), bool)
+    edge[:, 8:] = False
+    smooth = load("rectangle-1").nodes["smooth"].settings
+    low_pass = LowPass(size=smooth["size"])
+    assert not and_compare(corner, low_pass(corner), level=0.2501).values.any()
+    assert and_compare(corner, low_pass(corner), level=0.25).values.any()
+    kept = and_compare(Mask(edge), low_pass(Mask(edge)), level=1.0 / 3.0).values
+    np.testing.assert_array_equal(kept, edge)
+    assert "more than 1/4" in row("4.3.3")
 
 
 def test_4_6_as_printed_lays_the_axis_along_x_where_y_runs_down() -> None:
