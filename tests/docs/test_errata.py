@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tactile_graph import Image, Mask, Points
+from tactile_graph import Image, Mask, Points, load
 from tactile_graph_classifiers.distances.minimum_distance import MinimumDistance
 from tactile_graph_classifiers.measuring.measurements import Measurements
+from tactile_graph_filters.images.low_pass import LowPass
+from tactile_graph_filters.morphology.and_compare import and_compare
 from tactile_graph_filters.morphology.dilate import Dilate
 from tactile_graph_filters.morphology.erode import Erode
 from tactile_graph_filters.morphology.open import Open
@@ -23,6 +25,7 @@ from tactile_graph_fitters.orientation.rotate_points import rotate_points
 from tactile_graph_mrf.energy.model import Model
 from tactile_graph_mrf.energy.problem import prepare
 from tactile_graph_mrf.energy.total import energy
+from tactile_graph_pads.circuits import Divider, Feedback
 from tactile_graph_pads.pad import load_pad
 
 PAGE = Path(__file__).parents[2] / "docs" / "errata.md"
@@ -39,6 +42,22 @@ def test_two_loads_of_the_thesis_make_the_exponent() -> None:
     law = load_pad("thesis").law
     assert f"exponent of {exponent:.2f}".replace("-", "−") in row("2.1.1, 2.3.2")
     assert law.resistance_at(2000.0) / law.resistance_at(100.0) == pytest.approx(1 / 80, rel=1e-3)
+
+
+def test_the_converter_of_2_2_2_and_the_divider_of_its_results() -> None:
+    siemens = np.zeros((16, 1))
+    siemens[0, 0] = 1.0 / 80e3
+    lone, volts = siemens.copy(), {}
+    for circuit in (Divider(bias_ohm=33e3), Feedback(bias_ohm=33e3)):
+        siemens[1:9] = 0.0
+        volts[circuit.kind] = [5.0 * circuit.ratio(lone)[0, 0]]
+        siemens[1:9] = 1.0 / 80e3
+        volts[circuit.kind].append(5.0 * circuit.ratio(siemens)[0, 0])
+    assert volts["feedback"] == pytest.approx([2.0625, 2.0625])
+    assert volts["divider"] == pytest.approx([1.46, 0.438], rel=1e-2)
+    for value in ("2.06 V", "1.46 V", "165 V"):
+        assert value in row("2.2.2, 2.3.1")
+    assert 5.0 * 33e3 / 1e3 == 165.0
 
 
 def test_an_opening_takes_the_turned_element() -> None:
@@ -104,6 +123,20 @@ def test_d_8_is_the_polar_distance_which_the_y_axis_has_too() -> None:
     found = fit_ellipse_origin(on_axes, Orientation(0.0, 0.0, 0.0, 0.6, 0.0, False))
     assert (found.semi_major_cm, found.semi_minor_cm) == pytest.approx((5.0, 2.0), rel=1e-6)
     assert x * x * b * b + y * y * a * a != 1.0  # D.3: its right side is a² b²
+
+
+def test_a_lone_point_in_the_corner_is_gone_above_a_quarter_only() -> None:
+    on = np.zeros((16, 16), bool)
+    on[0, 0] = True
+    corner, edge = Mask(on), np.ones((16, 16), bool)
+    edge[:, 8:] = False
+    smooth = load("rectangle-1").nodes["smooth"].settings
+    low_pass = LowPass(size=smooth["size"])
+    assert not and_compare(corner, low_pass(corner), level=0.2501).values.any()
+    assert and_compare(corner, low_pass(corner), level=0.25).values.any()
+    kept = and_compare(Mask(edge), low_pass(Mask(edge)), level=1.0 / 3.0).values
+    np.testing.assert_array_equal(kept, edge)
+    assert "more than 1/4" in row("4.3.3")
 
 
 def test_4_6_as_printed_lays_the_axis_along_x_where_y_runs_down() -> None:

@@ -22,7 +22,7 @@ class Dilate:
     element : str or list of list of int
         The structuring element, as `erode` takes it.
     border : bool
-        Whether cells outside the mask count as on; in the thesis they do not.
+        Whether cells outside the mask count as on; the thesis does not say.
 
     Notes
     -----

@@ -23,8 +23,8 @@ class Erode:
         The structuring element: ``cross3`` (the thesis' #1), ``disc5``, ``disc7``, ``square3``,
         ``square21``, any odd ``cross:N``, ``disc:N``, ``square:N``, or rows of 0 and 1.
     border : bool
-        Whether cells outside the mask count as on. As in the thesis they do not, so that what
-        reaches the edge of the pad is eroded from there too.
+        Whether cells outside the mask count as on. By default they do not, so that what reaches
+        the edge of the pad is eroded from there too; the thesis does not say.
 
     Notes
     -----

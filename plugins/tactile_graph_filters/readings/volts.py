@@ -39,7 +39,7 @@ class Volts:
 
     Notes
     -----
-    Thesis section 2.2.2: 12 bits over -5 to 5 V. Counts that the converter cannot give become
+    Thesis section 4.1: 12 bits over -5 to 5 V. Counts that the converter cannot give become
     invalid; they are never clipped.
     """
 

@@ -41,7 +41,7 @@ def outline_points(
     image : Image, optional
         Its readings, as recorded.
     unevenness : float
-        Standard deviation of the logarithm of the elements' gains.
+        Standard deviation of the logarithm of the gains of the elements' loads.
     load_power : float
         Power of the load that a reading goes with: 1 for grams, about 1.5 for the volts of the
         thesis' divider.
@@ -58,9 +58,10 @@ def outline_points(
 
     Notes
     -----
-    A cell covered by the share c reads c**load_power times a full reading times a lognormal gain;
-    any c is as likely as any other beforehand. The mean of c given the reading r over the median
-    reading of the cells within is, with m = log(r) / load_power and s = unevenness::
+    A cell covered by the share c bears c times a lognormal gain of a full load, and reads that to
+    the power load_power; any c is as likely as any other beforehand. The mean of c given the
+    reading r over the median reading of the cells within is, with m = log(r) / load_power and
+    s = unevenness::
 
         exp(m + 1.5 s²) Phi(-(m + 2 s²) / s) / Phi(-(m + s²) / s)
 

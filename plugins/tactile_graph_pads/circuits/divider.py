@@ -1,7 +1,8 @@
-"""The thesis' circuit: a divider against a bias resistor, idle rows held low.
+"""The thesis' circuit as its results show it: a divider against a bias resistor, idle rows low.
 
 An element shares its column's bias resistor with the others of its column, so a loaded column
-shadows itself; nothing leaks between columns (thesis sections 2.2, 2.3 and figures 2.7 to 2.11).
+shadows itself; nothing leaks between columns (thesis section 2.3.2 and figures 2.7 to 2.11). The
+converters of its section 2.2.2 would not couple: they are `feedback`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""Site isolation: every column held at virtual ground by a feedback amplifier.
+"""Every column held at virtual ground by an amplifier that turns its current into a voltage.
 
-Thesis figure 6.1 (after Speeter 1989). With ideal parts nothing couples; a row driver's
-resistance lets the elements of a row share its voltage drop.
+The current to voltage converter of thesis section 2.2.2. With ideal parts nothing couples; a row
+driver's resistance lets the elements of a row share its voltage drop. The thesis' site isolation
+(section 6.1.1) is another circuit, a divider whose idle rows are fed the voltage that is read.
 """
 
 from __future__ import annotations

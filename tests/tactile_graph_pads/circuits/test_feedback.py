@@ -1,4 +1,4 @@
-"""Site isolation: no coupling with ideal parts, an exact inverse with real drivers."""
+"""Columns at virtual ground: no coupling with ideal parts, an exact inverse with real drivers."""
 
 import numpy as np
 import pytest

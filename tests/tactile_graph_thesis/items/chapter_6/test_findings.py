@@ -5,8 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tactile_graph_pads.circuits import Divider
 from tactile_graph_thesis.items.chapter_5.section_5_5_2_heavier_side import tells_the_side
-from tactile_graph_thesis.items.chapter_6.section_6_1_1_site_isolation import counters
+from tactile_graph_thesis.items.chapter_6.section_6_1_1_site_isolation import (
+    counters,
+    fed_back_ratio,
+)
 from tactile_graph_thesis.items.chapter_6.section_6_1_3_direct_ellipse import (
     less_sensitive,
     no_worse,
@@ -19,6 +23,17 @@ def test_a_circuit_that_leaves_a_tenth_does_not_counter_the_coupling() -> None:
     assert counters(divider, {4: 0.0, 100: 1.0}).holds
     assert not counters(divider, {4: 0.0, 100: 7.0}).holds
     assert not counters({100: 0.0}, {100: 0.0}).holds
+
+
+def test_rows_fed_what_is_read_leave_the_lone_divider() -> None:
+    rng = np.random.default_rng(8)
+    siemens = rng.uniform(0.0, 1e-4, (5, 4))
+    lone = np.zeros((5, 4))
+    lone[2, 1] = siemens[2, 1]
+    assert fed_back_ratio(siemens, (2, 1), 33e3) == pytest.approx(Divider().ratio(lone)[2, 1])
+    assert 0.0 < Divider().ratio(siemens)[2, 1] < 0.7 * Divider().ratio(lone)[2, 1]
+    driven = fed_back_ratio(siemens, (2, 1), 33e3, 1e-3)
+    assert driven == pytest.approx(Divider().ratio(lone)[2, 1], rel=1e-5)
 
 
 def test_an_angle_a_tenth_worse_is_worse() -> None:
