@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pathlib
 import unicodedata
 from collections.abc import Callable, Iterable
@@ -396,13 +397,14 @@ def assignment(
         Whether a setting of some name may be any text: what is no YAML, such as ``%H:%M`` or
         ``#3``, is taken as it is typed there, and so is a text with `` #`` in it.
     takes_paths : callable
-        Whether a setting of some name is a path or several: all but null and what stands in quotes
-        or brackets, such as ``D:``, ``2024`` or ``rec #2.npz``, is taken as it is typed there.
+        Whether a setting of some name may be any path: all but null and what stands in quotes or
+        brackets, such as ``D:``, ``2024`` or ``rec #2.npz``, is taken as it is typed there, and so
+        is a file of that very name.
 
     Raises
     ------
     UsageError
-        If there is no ``=``, or the value is no plain YAML.
+        If there is no ``=``, or the value is no plain YAML, or a text with a comment behind it.
     """
     name, sign, value = (part.strip() for part in text.partition("="))
     form = "node.setting=value" if option == "--set" else "key=value"
@@ -413,13 +415,14 @@ def assignment(
     document = read_document(value, f"{option} {name}")
     data = None if document.problems else document.data
     written = not document.problems and (value[0] + value[-1] in _WRITTEN or data is None)
-    if takes_paths(name) and not written:
+    if takes_paths(name) and not (written and (data is None or not os.path.exists(value))):
         return name, value
-    cut = isinstance(data, str) and " #" in value and not written
+    cut = isinstance(data, str | list) and " #" in value and not written
     if takes_text(name) and (document.problems or cut):
         return name, value
-    if value.startswith("#"):
-        raise UsageError(f"{option} {text}: a comment of YAML; put a text in quotes")
+    if value.startswith("#") or (cut and isinstance(data, str)):
+        comment = shown(value[value.find(" #") + 1 :])
+        raise UsageError(f"{option} {text}: {comment} is a comment of YAML; put a text in quotes")
     if document.problems:
         raise UsageError(f"{option} {text}: {document.problems[0].message}")
     return name, data

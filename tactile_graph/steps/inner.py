@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import types
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from enum import Enum
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
@@ -131,6 +131,14 @@ def _any_of(annotations: list[Any]) -> Any:
         return Union[tuple(annotations)]  # noqa: UP007 -- as many as there are
     except TypeError:  # metadata without a hash
         return annotations[0]
+
+
+def holds(bare: Any) -> bool:
+    """Return whether values of a bare type hold others, such as a list's items."""
+    kind = get_origin(bare) or bare
+    if isinstance(kind, type) and issubclass(kind, Mapping | Sequence | AbstractSet):
+        return not issubclass(kind, str | bytes)
+    return is_array(bare) or bool(fields(bare))
 
 
 def _is_mapping(bare: Any) -> bool:

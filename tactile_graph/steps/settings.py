@@ -17,6 +17,7 @@ from tactile_graph.steps.arrays import is_array, with_arrays
 from tactile_graph.steps.inner import (
     Place,
     fields,
+    holds,
     is_open,
     item,
     key_of,
@@ -82,15 +83,23 @@ def adapter(setting: Setting) -> TypeAdapter[Any]:
 
 
 def takes_text(signature: Signature, name: str) -> bool:
-    """Return whether a setting of that name is there, and is a text, whichever it be."""
-    kinds = next((set(members(s.annotation)) for s in signature.settings if s.name == name), set())
-    return str in kinds and kinds <= {str, Path, type(None)}
+    """Return whether a setting of that name is there, and may be a text, whichever it be."""
+    return str in _kinds_beside_others(signature, name)
 
 
 def takes_paths(signature: Signature, name: str) -> bool:
-    """Return whether a setting of that name is there, and is a path or several."""
-    kinds = next((set(members(s.annotation)) for s in signature.settings if s.name == name), set())
-    return Path in kinds and kinds <= {str, Path, list[Path], tuple[Path, ...], type(None)}
+    """Return whether a setting of that name is there, and may be a path, whichever it be."""
+    return Path in _kinds_beside_others(signature, name)
+
+
+def _kinds_beside_others(signature: Signature, name: str) -> set[Any]:
+    """Return whether a setting may be a text, a path or both, beside what holds several values.
+
+    None of them where a single word may be something else, too, such as a number.
+    """
+    found = next((members(s.annotation) for s in signature.settings if s.name == name), [])
+    kinds = {kind for kind in found if kind is not type(None) and not holds(kind)}
+    return kinds if kinds <= {str, Path} else set()
 
 
 def validate_settings(

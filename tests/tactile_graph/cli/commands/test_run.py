@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -25,7 +26,10 @@ from helpers_cli import DISCS, Counting, broken_plugin, call, install
 from tactile_graph import Frame, Mask, load
 from tactile_graph.cli.output.live_table import LiveTable
 from tactile_graph.engine.tables.columns import Column, columns_of
+from tactile_graph.errors import UsageError
 from tactile_graph.pipeline.document import assignment
+from tactile_graph.steps.settings import takes_paths, takes_text
+from tactile_graph.steps.signature import read_signature
 
 pytestmark = pytest.mark.usefixtures("hand_made")
 
@@ -388,7 +392,7 @@ def test_mistakes_are_told_in_words_without_a_traceback(args, message):
 def test_a_text_setting_takes_what_is_no_yaml_as_it_is_typed(tmp_path, monkeypatch, text):
     seen = []
 
-    def told(mask: Mask, *, word: str = "", words: str | list[str] = "") -> float:
+    def told(mask: Mask, *, word: str | list[str] = "") -> float:
         seen.append(word)
         return mask.area_cm2
 
@@ -401,7 +405,6 @@ def test_a_text_setting_takes_what_is_no_yaml_as_it_is_typed(tmp_path, monkeypat
     words = ("run", tmp_path / "p.yaml", "--source", "fed", "--with", f"word={text}", "--set")
     assert call(*words, f"circle.word={text}").exit_code == 0
     assert seen == [text, text]
-    assert f"--set circle.words={text}: " in call(*words, f"circle.words={text}").stderr
 
 
 @pytest.mark.parametrize(
@@ -429,12 +432,54 @@ def test_a_path_is_taken_as_it_is_typed_whatever_yaml_makes_of_it(tmp_path, monk
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [("rec #2", "rec #2"), ('"rec" #2', '"rec" #2'), ('"rec #2"', "rec #2"), ("null", None)],
+    [(t, t) for t in ("rec #2", "[a] #2", '"rec" #2')] + [('"rec #2"', "rec #2"), ("null", None)],
 )
 def test_only_quotes_and_null_are_read_as_yaml_where_a_text_or_path_is_meant(text, value):
     for takes in ([lambda _: True], [lambda _: False, lambda _: True]):
         assert assignment("--with", f"path={text}", *takes) == ("path", value)
     assert assignment("--with", "path=[a, b]", *takes) == ("path", ["a", "b"])
+
+
+@pytest.mark.parametrize("kind", [Path | dict[str, Any] | None, str | dict[str, Any]])
+@pytest.mark.parametrize("text", ["rec #2.npz", "#2.npz", "[x].npz", "{x}.npz", "{x"])
+def test_a_text_is_taken_as_it_is_typed_beside_a_mapping(tmp_path, monkeypatch, kind, text):
+    seen = []
+
+    def told(mask: Mask, *, file: kind = "") -> float:
+        seen.append(file)
+        return mask.area_cm2
+
+    told.__annotations__ |= {"mask": Mask, "file": kind, "return": float}
+    install(monkeypatch, tmp_path, steps={"told": told})
+    (tmp_path / "p.yaml").write_text(DISCS.replace("step: disc,", "step: told,"))
+    for value in (text, "{a: 'b #c'}"):
+        got = call("run", tmp_path / "p.yaml", "--set", f"circle.file={value}")
+        assert got.exit_code == 0, got.output
+    typed = text if kind == str | dict[str, Any] else Path(text)
+    assert seen == [*[typed] * (len(seen) // 2), *[{"a": "b #c"}] * (len(seen) // 2)]
+
+
+def test_a_text_is_taken_as_it_is_typed_beside_a_list_and_no_number():
+    def told(*, words: str | list[str], also: Path | list[str], number: str | float) -> float:
+        return 1.0
+
+    its = read_signature("told", told)
+    assert [takes_text(its, s.name) for s in its.settings] == [True, False, False]
+    assert [takes_paths(its, s.name) for s in its.settings] == [False, True, False]
+
+
+def test_a_file_in_brackets_is_taken_where_it_is_there(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    takes = (lambda _: False, lambda _: True)
+    assert assignment("--with", "path=[a, b]", *takes) == ("path", ["a", "b"])
+    (tmp_path / "[a, b]").touch()
+    assert assignment("--with", "path=[a, b]", *takes) == ("path", "[a, b]")
+
+
+def test_no_text_is_cut_where_nothing_tells_what_a_setting_takes():
+    with pytest.raises(UsageError, match=r"'#2\.npz' is a comment of YAML"):
+        assignment("--set", "a.b=rec #2.npz")
+    assert assignment("--set", 'a.b="rec #2.npz"') == ("a.b", "rec #2.npz")
 
 
 def test_without_a_pipeline_run_says_what_there_is():
