@@ -39,4 +39,4 @@ def check_pipeline(given: Any) -> None:
 
 
 def _is_above_0(number: Any) -> bool:
-    return isinstance(number, Real) and not isinstance(number, bool) and number > 0
+    return isinstance(number, Real) and not isinstance(number, bool) and float(number) > 0.0
