@@ -25,6 +25,8 @@ from tactile_graph.part_files import part_of, put_in_place, remove
 Name = str | os.PathLike[str]
 LOOKED_FOR = "tactile_graph.looked_for"
 """Python's audit event of a file that is not there, with its path."""
+SYNCED_AT_ONCE = 16
+"""Files that are put on the disc at the same time, which takes little longer than one."""
 _ERRNO = re.compile(r"\berrno\W+(\d+)", re.I)
 
 
@@ -102,13 +104,26 @@ def whole_folder(name: Name) -> Iterator[Path]:
 
 def put_on_disc(path: Path, within: Path) -> None:
     """Wait until a file, and its name in each folder up to ``within``, are on the disc."""
-    folders = [] if os.name == "nt" else [p for p in path.parents if p.is_relative_to(within)]
-    for place in (path, *folders):  # Windows opens no folders, and keeps their names by itself
-        descriptor = os.open(place, os.O_RDWR if place == path else os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
+    put_all_on_disc([path], within)
+
+
+def put_all_on_disc(paths: Sequence[Path], within: Path) -> None:
+    """Wait until files, and their names in each folder up to ``within``, are on the disc."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    # Windows opens no folders, and keeps their names by itself.
+    parents = () if os.name == "nt" else (p for path in paths for p in path.parents)
+    folders = dict.fromkeys(p for p in parents if p.is_relative_to(within))
+    with ThreadPoolExecutor(SYNCED_AT_ONCE) as pool:
+        list(pool.map(_synced, (*paths, *folders)))
+
+
+def _synced(place: Path) -> None:
+    descriptor = os.open(place, os.O_RDONLY if place.is_dir() else os.O_RDWR)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 def write_whole(name: Name, content: str | bytes) -> None:

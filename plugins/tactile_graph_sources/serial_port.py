@@ -61,7 +61,8 @@ def serial(
     queue_size : int
         Frames that may wait to be taken.
     report : Report
-        Takes the link's counters and what happened to it; ends the frames once none are wanted.
+        Takes the link's counters, what happened to it and how many frames wait; once none are
+        wanted the port is read no more, and what came before ends the frames.
 
     Yields
     ------
@@ -84,17 +85,20 @@ def serial(
     if n_frames is not None:
         report.expect(n_frames)
     teller = _Teller(reader, report)
+    report.n_waiting = 0
     end = math.inf if seconds is None else time.perf_counter() + seconds
     try:
         index = 0
         while n_frames is None or index < n_frames:
             arrived = _next(reader, teller, give_up_s, end)
+            report.n_waiting = len(reader.inbox)
             if arrived is None:
                 return
             yield _frame(arrived, index, kit, port)
             index += 1
     finally:
         reader.stop()
+        report.n_waiting = len(reader.inbox)
         teller.tell(force=True)
 
 
@@ -139,7 +143,8 @@ def _opened(
 def _next(reader: Reader, teller: _Teller, give_up_s: float | None, end: float) -> Arrived | None:
     """Return the next frame that came before ``end``, if it was taken later too; or None.
 
-    None too once no frame is wanted any more: the port is then free for others.
+    Once no frame is wanted any more the port is free for others, and only what came before is
+    returned.
     """
     start = time.perf_counter()
     while teller.report.wanted:
@@ -153,7 +158,9 @@ def _next(reader: Reader, teller: _Teller, give_up_s: float | None, end: float) 
         if give_up_s is not None and time.perf_counter() - start > give_up_s:
             teller.tell(force=True)
             raise DataError(reader.url, f"no frame for {give_up_s:g} s ({reader.state})")
-    return None
+    reader.stop()
+    arrived = reader.inbox.get(0.0)
+    return None if arrived is None or arrived.time_s > end else arrived
 
 
 def _frame(arrived: Arrived, index: int, kit: Preset, port: str) -> Frame:

@@ -279,7 +279,7 @@ class Pipeline(Graph):
             be done in time is skipped.
         capacity, unread : int
             How many frames may wait to be answered, and how many results to be taken, before the
-            oldest go.
+            oldest go; at least 1.
         report : Report, optional
             Its ``wanted`` is false once the stream is closed. A generator is closed at the frame it
             gives next: one that waits (for a queue, a socket) looks at it now and then, and ends.
@@ -344,7 +344,8 @@ class Pipeline(Graph):
     ) -> Runner[Result]:
         """Return a callable of frames that keeps state, for loops of your own.
 
-        It does not hold what steps give against what they promise, as `run` and `stream` do.
+        It takes no bare arrays: `Frame.of` makes frames of them. It does not hold what steps give
+        against what they promise, as `run` and `stream` do.
 
         With ``verify`` a step fails that writes into what others read; this costs time. A
         ``decider`` says for each frame what is left undone: a `tactile_graph.live.Deadline`, or

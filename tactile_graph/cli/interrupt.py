@@ -6,6 +6,7 @@ import _thread
 import signal
 import sys
 import threading
+from collections.abc import Callable
 from types import FrameType, TracebackType
 from typing import Any, ClassVar
 
@@ -52,6 +53,14 @@ class Interrupts:
     signals that end programs raise `Ended` likewise. One that is ignored (nohup) stays so. What is
     raised where Python lets no error out, as in a callback that a library's machine code calls, or
     in a ``__del__``, comes again right after.
+
+    Attributes
+    ----------
+    politely : callable, optional
+        Asked when the first signal comes: true if the work then ends by itself, and nothing is
+        raised but at the next one.
+    heeded : KeyboardInterrupt, optional
+        What was not raised for that.
     """
 
     latest: ClassVar[KeyboardInterrupt | None] = None
@@ -59,6 +68,8 @@ class Interrupts:
 
     def __init__(self) -> None:
         self.held = _Held()
+        self.politely: Callable[[], bool] | None = None
+        self.heeded: KeyboardInterrupt | None = None
         self._before: dict[int, Any] = {}
         self._told_before: Any = None
 
@@ -99,6 +110,9 @@ class Interrupts:
 
     def _came(self, number: int, _frame: FrameType | None) -> None:
         error = KeyboardInterrupt() if number == signal.SIGINT else Ended(number)
+        if self.politely is not None and self.heeded is None and self.politely():
+            self.heeded = error
+            return
         Interrupts.latest = error
         if self.held.depth:
             self.held.waiting = error

@@ -17,7 +17,7 @@ from tactile_graph.engine.deadlines.deadline import Deadline
 from tactile_graph.engine.deadlines.options import Decider
 from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.engine.runner import Runner
-from tactile_graph.errors import UsageError
+from tactile_graph.live.asked import check_pipeline, checked_deadline, checked_room
 from tactile_graph.live.beside import Beside
 from tactile_graph.live.live_result import LiveResult
 from tactile_graph.live.waiting import Arrival, Waiting
@@ -86,13 +86,18 @@ class LiveRun(Generic[ResultT]):
         Microseconds from a frame's arrival within which its result is wanted: what would not be
         done in time is skipped. The pipeline's own ``deadline_us`` if not given.
     capacity : int
-        How many frames may wait.
+        How many frames may wait; at least 1.
     report : Report, optional
         Receives what the pipeline's own source has to say. Its ``wanted`` is false once the run is
         stopped: a source that waits for something looks there now and then, and ends; it is closed
         no sooner than at its next frame.
     clock : callable
         Nanoseconds now.
+
+    Raises
+    ------
+    UsageError
+        If the pipeline, the source or a number is none.
     """
 
     def __init__(
@@ -109,7 +114,7 @@ class LiveRun(Generic[ResultT]):
     ) -> None:
         self.report = report or Report()
         self.report.wanted = True
-        self._asked_us = _checked(deadline_us)
+        self._asked_us = checked_deadline(deadline_us)
         self._only, self._seed, self._clock = only, seed, clock
         self._pipeline = pipeline
         self._ready = self._made_ready(pipeline)
@@ -118,7 +123,7 @@ class LiveRun(Generic[ResultT]):
         self._source: Iterable[Frame | Image | NDArray[np.generic]] = (
             pipeline.frames(seed, self.report) if source is None else source
         )
-        self._waiting = Waiting(capacity)
+        self._waiting = Waiting(checked_room("capacity", capacity))
         self._error: BaseException | None = None
         self._stopped = False
         self._paused = False
@@ -160,7 +165,7 @@ class LiveRun(Generic[ResultT]):
 
     @deadline_us.setter
     def deadline_us(self, deadline_us: float | None) -> None:
-        self._asked_us = _checked(deadline_us)
+        self._asked_us = checked_deadline(deadline_us)
         now_us = self._asked_us or self._pipeline.deadline_us
         if (now_us is None) == (self._ready.deadline is None):
             self._ready = self._ready._replace(deadline_us=now_us)
@@ -199,6 +204,7 @@ class LiveRun(Generic[ResultT]):
     def _made_ready(
         self, pipeline: Runnable[ResultT], after: Ready[ResultT] | None = None
     ) -> Ready[ResultT]:
+        check_pipeline(pipeline)
         before, timed = (None, None) if after is None else (after.runner, after.deadline)
         deadline_us = self._asked_us or pipeline.deadline_us
         deadline = None if deadline_us is None else Deadline(self._clock, timed)
@@ -294,9 +300,3 @@ class LiveRun(Generic[ResultT]):
             asked = self._steps > 0
             self._steps -= asked
             return asked
-
-
-def _checked(deadline_us: float | None) -> float | None:
-    if deadline_us is not None and not 0 < deadline_us < float("inf"):
-        raise UsageError(f"a deadline is a number of microseconds above 0, got {deadline_us}")
-    return deadline_us

@@ -9,6 +9,7 @@ from threading import Thread
 from typing import Generic, Self, TypeVar
 
 from tactile_graph.engine.outcomes.outcomes import Outcomes
+from tactile_graph.live.asked import checked_room
 from tactile_graph.live.live_result import LiveResult
 from tactile_graph.live.live_run import LiveRun
 
@@ -27,14 +28,14 @@ class LiveStream(AsyncIterator[LiveResult[ResultT]], Generic[ResultT]):
     run : LiveRun
         It is stopped when the stream is closed.
     unread : int
-        How many results may wait.
+        How many results may wait; at least 1.
     """
 
     def __init__(self, run: LiveRun[ResultT], unread: int) -> None:
         self.run = run
         self.n_unread = 0
         """How many results went because nobody took them."""
-        self._results: deque[LiveResult[ResultT]] = deque(maxlen=unread)
+        self._results: deque[LiveResult[ResultT]] = deque(maxlen=checked_room("unread", unread))
         self._error: BaseException | None = None
         self._thread: Thread | None = None
         self._ended = False

@@ -4,13 +4,22 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING
 
 from tactile_graph.errors import UsageError
+from tactile_graph.live.asked import checked_rate
 from tactile_graph.wires.frame import Frame
+from tactile_graph.wires.given import as_frames
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from tactile_graph.wires.image import Image
 
 
 def paced(
-    frames: Iterable[Frame],
+    frames: Iterable[Frame | Image | NDArray[np.generic]],
     rate_hz: float | None = None,
     *,
     clock_s: Callable[[], float] = time.perf_counter,
@@ -20,7 +29,7 @@ def paced(
 
     Parameters
     ----------
-    frames : iterable of Frame
+    frames : iterable of Frame, Image or ndarray
     rate_hz : float, optional
         Frames a second; by the frames' own times if not given.
     clock_s, sleep : callable
@@ -29,13 +38,14 @@ def paced(
     Raises
     ------
     UsageError
-        If no rate is given and a frame has no time, or the rate is not above 0.
+        If no rate is given and a frame has no time, the rate is not above 0, or what is given has
+        no frames.
     """
-    if rate_hz is not None and not rate_hz > 0:
-        raise UsageError(f"a rate is above 0 frames a second, got {rate_hz}")
+    checked_rate(rate_hz)
+    given = as_frames(frames)
     start_s = clock_s()
     first_s: float | None = None
-    for n, frame in enumerate(frames):
+    for n, frame in enumerate(given):
         if rate_hz is not None:
             due_s = start_s + n / rate_hz
         elif frame.time_s is None:

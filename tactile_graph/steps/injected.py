@@ -49,7 +49,10 @@ class Report:
         until they are read to their end.
     wanted : bool
         Whether more frames are taken: false once nobody waits for the source any more. One that
-        waits for a device looks here now and then, and ends.
+        waits for a device looks here now and then, and ends, after what it has read by then.
+    n_waiting : int or None
+        How many frames have come and wait to be taken, of a source that reads on meanwhile; None
+        of others.
     """
 
     def __init__(
@@ -61,6 +64,7 @@ class Report:
         self.n_places: int | None = None
         self.digests: dict[str, str] = {}
         self.wanted = True
+        self.n_waiting: int | None = None
         self._listener = listener
         self._keep = keep
 

@@ -45,6 +45,7 @@ class Frame:
     Parameters
     ----------
     image : Image
+        Taken as it is: a cell that is no number must be invalid, as `of` makes it.
     index : int
         Number of the frame in its source, from 0.
     time_s : float

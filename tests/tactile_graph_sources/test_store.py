@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -229,6 +230,47 @@ def test_rows_that_were_not_written_whole_do_not_count(tmp_path: Path) -> None:
     with StoreWriter(path, append=True) as store:
         store.write(frames(1, first=8)[0])
     assert [f.index for f in read_store(path)] == list(range(9))
+
+
+def test_frames_that_wait_are_written_in_one_go_and_vouched_for_chunk_by_chunk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, real, writings = tmp_path / "a.zarr", journal.append, []
+    monkeypatch.setattr(journal, "append", lambda p, line: writings.append(line) or real(p, line))
+    written = frames(20)
+    with StoreWriter(path, chunk=2) as store:
+        for i, frame in enumerate(written):
+            store.n_waiting = 19 - i
+            store.write(frame)
+    assert len(writings) == 2
+    assert [b.high - b.low for b in journal.read_journal(path).blocks] == 10 * [2]
+    assert all(same(a, b) for a, b in zip(written, read_store(path), strict=True))
+    assert not check(path).wrong
+
+
+def test_many_frames_that_were_not_written_whole_do_not_count_either(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, real = tmp_path / "a.zarr", StoreWriter._write
+
+    def killed(self: StoreWriter, name: str, low: int, rows: object) -> None:
+        if low and name == "number":
+            raise KeyboardInterrupt
+        real(self, name, low, rows)
+
+    monkeypatch.setattr(StoreWriter, "_write", killed)
+    store = StoreWriter(path, chunk=1)
+    with contextlib.suppress(KeyboardInterrupt):
+        for i, frame in enumerate(frames(20)):
+            store.n_waiting = 19 - i
+            store.write(frame)
+    assert len(store._held) == 19
+    store._held = []
+    store.close()
+    report = Report()
+    assert len(list(read_store(path, report))) == 1
+    assert not report.troubles
+    assert not check(path).wrong
 
 
 def test_a_flush_that_was_interrupted_is_done_again(

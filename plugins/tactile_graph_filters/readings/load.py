@@ -68,31 +68,67 @@ def measure(values, usable, above):  # type: ignore[no-untyped-def]
     return n, total, peak, moment_x, moment_y, below
 
 
+@compiled_later
+def measure_within(values, usable, on, above):  # type: ignore[no-untyped-def]
+    """Return what `measure` does, then number, sum and moments of those cells on a footprint.
+
+    Last comes the least reading of the usable cells beside it.
+    """
+    n = total = peak = moment_x = moment_y = below = 0.0
+    its_n = its = its_x = its_y = 0.0
+    least = math.inf
+    for i in range(values.shape[0]):
+        for j in range(values.shape[1]):
+            value = values[i, j]
+            if not usable[i, j]:
+                continue
+            if not on[i, j]:
+                least = min(least, value)
+            if not value <= above:
+                peak = value if n == 0.0 else max(peak, value)
+                n += 1.0
+                total += value
+                moment_x += j * value
+                moment_y += i * value
+                if on[i, j]:
+                    its_n += 1.0
+                    its += value
+                    its_x += j * value
+                    its_y += i * value
+            elif value < 0.0:
+                below += value
+    return n, total, peak, moment_x, moment_y, below, its_n, its, its_x, its_y, least
+
+
 def counts_cells_at_rest(image: Image, value: Load) -> str:
     """Return what to say where much of total or area is of cells that do not stand out; or empty.
 
     Of an area only where cells read less than zero: then noise lies around it, and is no load.
     """
     n_counted = value.contact_area_cm2 / image.cell_area_cm2
-    if value.total <= 0.0 or n_counted <= MANY_CELLS * image.values.size:
+    valid = True if image.valid is None else image.valid
+    many = MANY_CELLS * image.values.size
+    if value.total <= 0.0 or np.count_nonzero(valid & (image.values > 0.0)) <= many:
         return ""
     level = noise_level(image)
-    valid = True if image.valid is None else image.valid
     on = (image.values >= level) & valid
     if not on.any():  # a load on the whole pad leaves none to tell it from
         return ""
     share = 1.0 - float(image.values[on].sum()) / value.total
-    what, so = "total", "and draws the centre along; if nothing lies on them, the step 'tare' "
-    so += "takes off what they read at rest, and 'above' leaves them out"
+    what, so = "total", ", and draws the centre along" if n_counted > many else ""
+    so += (
+        "; if nothing lies on them, the step 'tare' takes off what they read at rest, and 'above' "
+    )
+    so += "leaves them out"
     if share <= LARGE_SHARE:
-        share = 1.0 - np.count_nonzero(on) / n_counted
-        what, so = "contact area", "as noise around zero does; 'above' leaves them out, or a "
+        share = 1.0 - np.count_nonzero(on) / n_counted if n_counted > many else 0.0
+        what, so = "contact area", ", as noise around zero does; 'above' leaves them out, or a "
         so += "footprint at the port 'mask'"
         if share <= LARGE_AREA or not (valid & (image.values < 0.0)).any():
             return ""
     return (
         f"{share:.0%} of the {what} is of cells that do not stand out of the others, below "
-        f"{level:.3g} {image.unit}, {so}"
+        f"{level:.3g} {image.unit}{so}"
     )
 
 
@@ -111,9 +147,10 @@ class LoadOf:
     mean of the cell centres weighted by the readings. All cells count, as in the sums that makers
     of pads print: what an untouched cell reads is part of them, of which it is told.
 
-    Half of the cells at rest read more than zero where noise lies around it. With a footprint, area
-    and centre are then those of its cells, and the total is that of all cells, those below zero,
-    too, so that noise adds nothing to it. Where none is below zero a footprint changes nothing.
+    With a footprint the area is that of its cells, and the total still that of all cells. The
+    centre is of the footprint's cells where those beside it show that they read something at rest:
+    one of them less than zero, as noise around zero does, or all of them more. Where noise lies
+    around zero, what is below it counts for the total, too, so that noise adds nothing to it.
     """
 
     stateless = True
@@ -143,18 +180,21 @@ class LoadOf:
         """
         values = np.ascontiguousarray(image.values, np.float64)
         usable = self._usable(image)
-        n, total, peak, moment_x, moment_y, below = measure(values, usable, self._above)
-        loaded, weight = total > 0.0, total
-        if mask is not None:
+        if mask is None:
+            n, total, peak, moment_x, moment_y, _ = measure(values, usable, self._above)
+            loaded, weight = total > 0.0, total
+        else:
             on = mask.values
             if on.shape != values.shape:
                 require_same_shape(image=image, mask=mask)
-            if below < 0.0 and self._above <= 0.0:
+            measured = measure_within(values, usable, on, self._above)
+            _, total, peak, moment_x, moment_y, below, n, its, its_x, its_y, least = measured
+            loaded, weight = total > 0.0, total
+            around_zero = below < 0.0 and self._above <= 0.0
+            if around_zero:
                 total += below
-                on = on if image.valid is None else _kept(on & usable)
-                n, its, _, its_x, its_y, _ = measure(values, on, self._above)
-                if its > 0.0:
-                    weight, moment_x, moment_y = its, its_x, its_y
+            if its > 0.0 and (around_zero or least > max(0.0, self._above)):
+                weight, moment_x, moment_y = its, its_x, its_y
         if not math.isfinite(total + moment_x + moment_y):
             refuse_unbounded(image, "the load, or its moment")
         if loaded:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import errno
+import logging
 import re
 import secrets
 import signal
@@ -142,7 +143,7 @@ async def serve(
         lifespan="off",
     )
     server = _Server(config)
-    with _signals(session.over) as came:
+    with _signals(session.over) as came, quiet_about_the_gone():
         running = asyncio.create_task(session.run())
         serving = asyncio.create_task(server.serve(sockets=[listener]))
         over = asyncio.create_task(session.over.wait())
@@ -161,6 +162,21 @@ async def serve(
         if not task.cancelled() and (error := task.exception()) is not None:
             raise error
     return session, came[0] if came else 0
+
+
+@contextlib.contextmanager
+def quiet_about_the_gone() -> Iterator[None]:
+    """While entered, asyncio does not log what is sent to a viewer that left without a word."""
+    logger = logging.getLogger("asyncio")
+
+    def is_worth_a_line(record: logging.LogRecord) -> bool:
+        return not record.getMessage().startswith("socket.send() raised exception")
+
+    logger.addFilter(is_worth_a_line)
+    try:
+        yield
+    finally:
+        logger.removeFilter(is_worth_a_line)
 
 
 @contextlib.contextmanager

@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import suppress
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from tactile_graph_sources.writers.write_store import StoreWriter
 
 SHOW_EVERY_S = 0.5
+BEHIND = 500
+"""Frames that have come and are not written at which it is told; a queue takes about 1000."""
 UNTOLD = ("bytes", "good frames", "frames", "troubles")
 FILES = (".npz", ".npy", ".csv", ".jsonl", ".json", ".txt")
 EXIT_CODES = """\b
@@ -90,7 +93,8 @@ def record(
     """Record every frame of a pad, or of another source, into the Zarr store TARGET, until Ctrl-C.
 
     Frames carry the host's time, the pad's own time where it sends one, and marks where some were
-    lost. A pad that is unplugged is waited for.
+    lost. A pad that is unplugged is waited for. Ctrl-C ends the reading, and what has come by then
+    is written; a second one ends at once.
     """
     from tactile_graph.cli.endings import NOT_DONE
     from tactile_graph.cli.interrupt import Ended, Interrupts, code_of, words_of
@@ -111,13 +115,15 @@ def record(
     ended: KeyboardInterrupt | None = None
     store: StoreWriter | None = None
     with Interrupts() as interrupts:
+        interrupts.politely = partial(_read_no_more, report)
         try:
             about = _about(preset, pad, port or f"source {source}")
             with StoreWriter(target, chunk, append, about) as store:
                 kept = frames if give_up is None else _until_gone(frames, gone)
-                _keep(kept, store, interrupts.again)
+                _keep(kept, store, report, interrupts.again)
+            ended = interrupts.heeded
         except KeyboardInterrupt as error:
-            ended = error  # the usual way to end a recording; what was held is written by now
+            ended = error  # what was held is written by now
         except TactileGraphError as error:
             failure = error
         finally:
@@ -126,6 +132,8 @@ def record(
     there = store is not None and is_store(target)  # or it was moved away meanwhile
     if store is not None and (failure is None or (there and store.n_written > store.n_before)):
         _tell(store, report, by_port=source is None)
+        if ended is not None and ended is not interrupts.heeded and (n := report.n_waiting):
+            say(f"  not written: {_frames_in_words(n)} that had come", err=True)
     if failure is not None:
         if isinstance(failure, UsageError) and there:
             say(f"'record --append {pasted(str(target))}' goes on with it", err=True)
@@ -213,16 +221,31 @@ def _until(frames: Iterator[Frame], seconds: float | None) -> Iterator[Frame]:
             return
 
 
-def _keep(frames: Iterator[Frame], store: StoreWriter, again: Callable[[], None]) -> None:
-    """Write the frames; on a terminal, say how many and how fast.
+def _read_no_more(report: Report) -> bool:
+    """Have a source that reads on meanwhile end with what it has read; return whether it is one."""
+    if report.n_waiting is not None:
+        report.wanted = False
+    return report.n_waiting is not None
+
+
+def _keep(
+    frames: Iterator[Frame], store: StoreWriter, report: Report, again: Callable[[], None]
+) -> None:
+    """Write the frames; on a terminal, say how many and how fast; say once that many wait.
 
     ``again`` is called after each and raises a signal that was swallowed on its way here.
     """
     shown = sys.stderr.isatty()
     since, n = time.perf_counter(), 0
+    told = False
     for frame in frames:
+        store.n_waiting = report.n_waiting or 0
         store.write(frame)
         again()
+        if store.n_waiting >= BEHIND and not told:
+            told = True
+            many = _frames_in_words(store.n_waiting)
+            say(f"{many} wait to be written; a larger --chunk is faster", err=True)
         n += 1
         now = time.perf_counter()
         if shown and now - since > SHOW_EVERY_S:
@@ -231,6 +254,10 @@ def _keep(frames: Iterator[Frame], store: StoreWriter, again: Callable[[], None]
             since, n = now, 0
     if shown:
         say("", err=True)
+
+
+def _frames_in_words(n: int) -> str:
+    return f"{n} frame{'s' if n != 1 else ''}"
 
 
 def _tell(store: StoreWriter, report: Report, by_port: bool) -> None:
@@ -246,7 +273,7 @@ def _tell(store: StoreWriter, report: Report, by_port: bool) -> None:
         if by_port:
             say(f"  {n_bytes} byte{'s' if n_bytes != 1 else ''} came from the port", err=True)
         return
-    say(f"{store.path}: {n} frame{'s' if n != 1 else ''}")
+    say(f"{store.path}: {_frames_in_words(n)}")
     if store.own_shapes:
         say(f"  left out: {OWN_SHAPES} ({', '.join(store.own_shapes)})", err=True)
     names = [n for n in sorted(report.counts) if n not in UNTOLD]

@@ -41,13 +41,11 @@ class Inbox:
         self._failure: BaseException | None = None
 
     def put(self, arrived: Iterable[Arrived]) -> None:
-        """Add frames; blocks while a lossless inbox is full."""
+        """Add frames; blocks while a lossless inbox is full, unless it is closed."""
         with self._changed:
             for item in arrived:
                 if len(self._frames) >= self.size:
                     item = self._make_room(item)
-                if self._closed:
-                    return
                 self._frames.append(item)
                 self._changed.notify_all()
 
@@ -60,6 +58,10 @@ class Inbox:
         self.counts.held_back += 1
         self._changed.wait_for(lambda: self._closed or len(self._frames) < self.size)
         return item
+
+    def __len__(self) -> int:
+        """Return how many frames wait to be taken."""
+        return len(self._frames)
 
     def get(self, timeout_s: float) -> Arrived | None:
         """Return the oldest frame, or None if none came in time; raises what broke the reader."""
@@ -82,7 +84,7 @@ class Inbox:
             self._changed.notify_all()
 
     def close(self) -> None:
-        """Let go whoever waits."""
+        """Let go whoever waits; what the reader has by now may still be put and taken."""
         with self._changed:
             self._closed = True
             self._changed.notify_all()

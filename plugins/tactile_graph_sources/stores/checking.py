@@ -17,6 +17,7 @@ from tactile_graph_sources.stores.layout import (
     NOTES,
     is_store,
     read_metadata,
+    unfinished,
     written_rows,
 )
 from tactile_graph_sources.stores.repairing import (
@@ -163,13 +164,14 @@ def _same(stored: Stored, name: str, told: Columns, low: int, high: int) -> bool
 def _of_rows(stored: Stored) -> Iterator[Finding]:
     """Yield the arrays of which Zarr's metadata tell other lengths than there are frames.
 
-    A writer that is cut short has begun at most one more chunk.
+    A writer that is cut short has begun at most so much more.
     """
+    most = unfinished(stored.chunk, stored.n_frames)
     for name in stored.metadata:
         n = written_rows(read_metadata(stored.path, name))
         if name != NOTES and n is not None and n != stored.n_frames:
             text = f"{name}/{METADATA} tells of {n} frames, there are {stored.n_frames}"
-            left = stored.n_frames < n <= stored.n_frames + stored.chunk
+            left = stored.n_frames < n <= stored.n_frames + most
             yield Finding(text, rewrite_metadata, left)
 
 

@@ -41,6 +41,11 @@ COLUMNS: dict[str, tuple[str, float]] = {
 NOTES = "notes"
 PITCH_ASSUMED = "pitch_assumed"
 """The attribute of a store whose ``pitch_cm`` nobody said."""
+MOST_TOGETHER = 256
+"""Frames that are written at once at most, where a chunk is smaller and more wait.
+
+The first of a store are a chunk at most: without a number and a journal nothing tells of more.
+"""
 Metadata = Mapping[str, Any]
 
 
@@ -139,6 +144,11 @@ def array_of(path: Path, name: str, data: Metadata, n: int, mode: str = "r") -> 
     zarr = load_zarr()
     store = zarr.storage.LocalStore(path, read_only=mode == "r")
     return zarr.Array.from_dict(zarr.storage.StorePath(store, name), with_rows(data, n))
+
+
+def unfinished(chunk: int, n_frames: int) -> int:
+    """Return how many frames a writer that is cut short behind others has begun at most."""
+    return max(chunk, MOST_TOGETHER) if n_frames else chunk
 
 
 def chunk_file(array: Any, name: str, row: int) -> str:

@@ -42,6 +42,7 @@ from tactile_graph_sources.stores.layout import (
     own_metadata,
     read_metadata,
     same_metadata,
+    unfinished,
     written_rows,
 )
 
@@ -303,16 +304,16 @@ def open_stored(path: Path) -> Stored:
     # Or a version that was damaged would have a journal overlooked.
     journaled = int(attributes["version"]) >= JOURNALED or (path / JOURNAL).exists()
     troubles = list(_troubles(path, journal, metadata)) if journaled else []
+    chunk = chunk_of(path, metadata)
     n, claimed, why = _numbered(path, metadata, journal.n_frames)
-    # A writer that was killed leaves less than a chunk without numbers, and a whole journal.
+    # A writer that was killed leaves few frames without numbers, and a whole journal.
     whole = not journaled or (
         journal.head is not None and journal.whole and _counted(path, metadata, journal.n_frames)
     )
-    unnumbered = claimed - n if why or not whole or claimed - n > chunk_of(path, metadata) else 0
+    unnumbered = claimed - n if why or not whole or claimed - n > unfinished(chunk, n) else 0
     if unnumbered:
         text = f"{unnumbered} frames from {n} on are lost: nothing numbers them"
         troubles.append(f"{text} ({why})" if why else text)
-    chunk = chunk_of(path, metadata)
     pieces = [Piece(b.low, b.high, b) for b in journal.blocks]
     for low, high in uncovered(journal.blocks, n):
         edges = [low, *range((low // chunk + 1) * chunk, high, chunk), high]

@@ -7,14 +7,16 @@ import shutil
 import time
 from collections.abc import Iterator, Mapping
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, UsageError
-from tactile_graph.files import put_on_disc, said, uninterrupted, whole_folder
+from tactile_graph.files import put_all_on_disc, put_on_disc, said, uninterrupted, whole_folder
 from tactile_graph.foreign_text import pasted
 from tactile_graph.wires.frame import Frame
 from tactile_graph.wires.image import Image
@@ -25,6 +27,7 @@ from tactile_graph_sources.stores.layout import (
     COLUMNS,
     FORMAT,
     JOURNAL,
+    MOST_TOGETHER,
     NOTES,
     PITCH_ASSUMED,
     VERSION,
@@ -102,6 +105,9 @@ class StoreWriter:
         self.chunk = chunk
         self.about = dict(about or {})
         self.n_written = 0
+        self.n_waiting = 0
+        """Frames that wait to be taken next: what fills chunks is written in one go with the one
+        before, as many take hardly longer than one."""
         self.own_shapes: dict[str, None] = {}
         """Types of plugins' own that true shapes were of; the truth of such frames is left out."""
         self._zarr = load_zarr()
@@ -109,6 +115,8 @@ class StoreWriter:
         self._attributes: Mapping[str, Any] = {}
         self._grid: dict[str, Any] = {}
         self._held: list[Frame] = []
+        self._due = 0
+        """How many held frames are written together, where more wait than fill a chunk."""
         self._marks_gap = False
         self._sessions: tuple[Session, ...] = ()
         self._started = ""
@@ -181,7 +189,11 @@ class StoreWriter:
         else:
             told = f"holds {_said(self._grid)}; this one is {_said(grid)}"
             raise DataError(str(self._called), told)
-        if len(self._held) >= self.chunk - self.n_written % self.chunk:
+        room = self.chunk - self.n_written % self.chunk
+        if len(self._held) == room and self.n_written:
+            more = max(0, min(self.n_waiting, MOST_TOGETHER - room))
+            self._due = room + more // self.chunk * self.chunk
+        if len(self._held) >= max(room, self._due):
             self.flush()
 
     def _create(self, grid: dict[str, Any]) -> None:
@@ -320,22 +332,34 @@ class StoreWriter:
         self._write(NOTES, self._notes_end, np.frombuffer(b"".join(columns.notes), np.uint8))
         for name in COLUMNS:
             self._write(name, low, rows[name])
-        self._put_values_on_disc(low)
-        line = journal.block_line(low, values, columns, self._attributes, self._started)
-        journal.append(self.path, line)
+        edges = [low, *range((low // self.chunk + 1) * self.chunk, high, self.chunk), high]
+        parts = [*pairwise(edges)]
+        self._put_values_on_disc(edges[:-1])
+        journal.append(self.path, b"".join(self._line(low, *p, values, columns) for p in parts))
         # Only now: a flush cut short by Ctrl-C is done again, over the same rows, at the end.
-        self._held, self._marks_gap = [], False
+        self._held, self._marks_gap, self._due = [], False, 0
         self.n_written, self._notes_end = high, int(ends[-1])
         if self._started:
             begun, self._started = Session(low, self._started), ""
             tell_sessions(self.path, [*self._sessions, begun])
 
-    def _put_values_on_disc(self, low: int) -> None:
+    def _put_values_on_disc(self, lows: list[int]) -> None:
         """Before the journal vouches for them, which has a copy of all the rest."""
-        array = array_of(self.path, "values", self._metadata["values"], low + 1)
-        chunk = self.path / chunk_file(array, "values", low)
-        if chunk.exists():  # Zarr writes none in which every value is missing
-            put_on_disc(chunk, self.path)
+        array = array_of(self.path, "values", self._metadata["values"], lows[-1] + 1)
+        chunks = [self.path / chunk_file(array, "values", low) for low in lows]
+        # Zarr writes none in which every value is missing.
+        put_all_on_disc([c for c in chunks if c.exists()], self.path)
+
+    def _line(
+        self, first: int, low: int, high: int, values: NDArray[Any], columns: journal.Columns
+    ) -> bytes:
+        """Return the journal's line of the frames of one chunk among those from ``first`` on."""
+        part = slice(low - first, high - first)
+        its: list[Any] = [column[part] for column in columns]
+        started = self._started if low == first else ""
+        return journal.block_line(
+            low, values[part], journal.Columns(*its), self._attributes, started
+        )
 
     def _columns(self, frames: list[Frame]) -> journal.Columns:
         gaps = np.array([f.gap for f in frames])

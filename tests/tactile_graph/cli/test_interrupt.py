@@ -49,6 +49,18 @@ def test_inside_it_waits_for_the_end():
     assert done == ["whole line"]
 
 
+def test_what_ends_by_itself_is_asked_once_before_it_is_made_to():
+    asked: list[str] = []
+    with Interrupts() as interrupts:
+        interrupts.politely = lambda: not asked.append("end")
+        signal.raise_signal(signal.SIGTERM)
+        interrupts.again()
+        assert isinstance(interrupts.heeded, Ended)
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+    assert asked == ["end"]
+
+
 def test_afterwards_the_handler_is_as_it_was():
     before = signal.getsignal(signal.SIGINT)
     with Interrupts():

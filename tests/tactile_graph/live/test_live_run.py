@@ -287,10 +287,28 @@ def test_a_deadline_in_a_file_is_a_number_above_0(wrong: str) -> None:
         pipeline(PLUS.replace("nodes:", f"deadline_us: {wrong}\nnodes:"))
 
 
-@pytest.mark.parametrize("wrong", [0, -1, float("nan"), float("inf")])
-def test_a_deadline_that_is_none_is_refused(wrong: float) -> None:
+@pytest.mark.parametrize("wrong", [0, -1, float("nan"), float("inf"), "5ms", True])
+def test_a_deadline_that_is_none_is_refused(wrong: Any) -> None:
     with pytest.raises(UsageError, match="a deadline is a number of microseconds above 0, got"):
         LiveRun(pipeline(), [], deadline_us=wrong)
+
+
+@pytest.mark.parametrize("wrong", [0, -1, "8", True, 2.5])
+def test_room_for_no_frame_or_result_is_refused(wrong: Any) -> None:
+    with pytest.raises(UsageError, match="capacity: must be a whole number >= 1, got"):
+        LiveRun(pipeline(), frames(1), capacity=wrong)
+    with pytest.raises(UsageError, match="unread: must be a whole number >= 1, got"):
+        pipeline().live(frames(1), unread=wrong)
+
+
+def test_what_is_no_pipeline_is_neither_run_nor_swapped_to() -> None:
+    message = r"a pipeline is needed, got 'circle-1'; load\('circle-1'\) makes one"
+    with pytest.raises(UsageError, match=message):
+        LiveRun("circle-1", frames(1))  # type: ignore[type-var]
+    run = LiveRun(pipeline(), frames(1))
+    with pytest.raises(UsageError, match=message):
+        run.swap("circle-1")  # type: ignore[arg-type]
+    assert len(list(run)) == 1
 
 
 def test_a_pipelines_own_source_reports() -> None:
@@ -432,3 +450,13 @@ def test_frames_without_times_want_a_rate() -> None:
         next(paced([Frame(frame(0, 0).image)]))
     with pytest.raises(UsageError, match="a rate is above 0 frames a second, got 0"):
         next(paced(frames(1), 0))
+    with pytest.raises(UsageError, match="a rate is above 0 frames a second, got '100'"):
+        next(paced(frames(1), "100"))  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match="frame 1 has no time: give a rate in frames a second"):
+        list(paced([frames(1)[0], np.zeros((2, 2))]))
+    with pytest.raises(UsageError, match="frames are needed, got NoneType"):
+        next(paced(None, 100))  # type: ignore[arg-type]
+
+
+def test_bare_arrays_are_paced_too_and_numbered() -> None:
+    assert [f.index for f in paced([np.zeros((2, 2))] * 3, float("inf"))] == [0, 1, 2]

@@ -9,7 +9,13 @@ from helpers_filters import ORIGIN, PITCH, image_of, random_mask
 from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Image
 from tactile_graph_filters.readings.force import Force
-from tactile_graph_filters.readings.load import Load, LoadOf, counts_cells_at_rest, measure
+from tactile_graph_filters.readings.load import (
+    Load,
+    LoadOf,
+    counts_cells_at_rest,
+    measure,
+    measure_within,
+)
 
 
 def test_total_area_peak_and_centre_of_pressure():
@@ -126,9 +132,51 @@ def test_noise_around_zero_adds_nothing_to_a_footprint_s_load():
 
 
 def test_a_footprint_changes_nothing_where_no_cell_reads_less_than_zero():
-    """Makers of pads print the sum and the area of all cells that read something."""
+    """But the area, which is its own: makers of pads print the sum of all cells."""
     image = image_of([[0.0, 0.1, 3.0], [0.2, 0.0, 5.0]])
-    assert LoadOf()(image, image.mask(image.values > 1.0)) == LoadOf()(image)
+    found, alone = LoadOf()(image, image.mask(image.values > 1.0)), LoadOf()(image)
+    cell_cm2 = PITCH[0] * PITCH[1]
+    assert (found.contact_area_cm2, alone.contact_area_cm2) == (2 * cell_cm2, 4 * cell_cm2)
+    assert found._replace(contact_area_cm2=0.0) == alone._replace(contact_area_cm2=0.0)
+
+
+def test_of_a_pad_that_rests_above_zero_area_and_centre_are_the_footprint_s_and_the_total_is_told():
+    image = pressed(0.1)
+    found, alone = LoadOf()(image, image.mask(image.values > 0.5)), LoadOf()(image)
+    assert found.contact_area_cm2 == pytest.approx(16 * PITCH[0] * PITCH[1])
+    assert found.x_cm == pytest.approx(ORIGIN[0] + 6.0 * PITCH[0], abs=0.01)
+    assert alone.x_cm == pytest.approx(ORIGIN[0] + 7.23 * PITCH[0], abs=0.01)
+    assert found.total == alone.total == pytest.approx(image.values.sum())
+    told = counts_cells_at_rest(image, found)
+    assert told.startswith(
+        "58% of the total is of cells that do not stand out of the others, below"
+    )
+    assert "centre" not in told
+    assert "draws the centre along" in counts_cells_at_rest(image, alone)
+
+
+def test_a_broken_cell_is_on_no_footprint_and_beside_none():
+    values, valid = np.full((3, 3), 0.1), np.ones((3, 3), bool)
+    values[1, :] = 0.0, 5.0, 5.0
+    valid[1, 0] = valid[1, 2] = False
+    image = image_of(values, valid=valid)
+    found = LoadOf()(image, image.mask(values >= 5.0))
+    assert found.contact_area_cm2 == pytest.approx(PITCH[0] * PITCH[1])
+    assert found.x_cm == pytest.approx(ORIGIN[0] + 1.5 * PITCH[0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("above", [0.0, -5.0, 0.7, 9.0])
+def test_within_a_footprint_it_measures_as_the_reference_does(above):
+    pytest.importorskip("numba")
+    values = np.random.default_rng(0).normal(size=(16, 12))
+    usable, on = (random_mask(seed, (16, 12)).values for seed in (0, 1))
+    n, total, _, x, y, _ = references.measure(values, usable & on, above)
+    least = values[usable & ~on].min()
+    whole = references.measure(values, usable, above)
+    expected = pytest.approx((*whole, n, total, x, y, least))
+    assert measure_within.loops(values, usable, on, above) == expected
+    assert measure_within.compiled(values, usable, on, above) == expected
 
 
 def test_without_a_footprint_s_cell_the_area_is_0():

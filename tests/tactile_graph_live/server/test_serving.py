@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
 import socket
+import struct
 
 import pytest
 
 pytest.importorskip("uvicorn", reason="the live extra is not installed")
 
 from tactile_graph.errors import UsageError
-from tactile_graph_live.server.serving import taken_door
+from tactile_graph_live.server.serving import quiet_about_the_gone, taken_door
 
 
 def test_small_messages_are_not_held_back_for_the_next() -> None:
@@ -54,3 +56,30 @@ def test_what_is_no_address_of_this_machine_is_refused() -> None:
 def test_a_token_that_cannot_stand_in_an_address_is_refused(token: str) -> None:
     with pytest.raises(UsageError, match="--token: must be of letters"):
         taken_door("127.0.0.1", 0, token)
+
+
+def test_what_is_sent_to_a_viewer_that_left_without_a_word_is_not_logged(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def sent_in_vain() -> None:
+        async def left(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+            for _ in range(20):
+                writer.write(b"news")
+                await asyncio.sleep(0)
+            over.set()
+            writer.close()
+
+        over = asyncio.Event()
+        server = await asyncio.start_server(left, "127.0.0.1", 0)
+        async with server:
+            with socket.create_connection(server.sockets[0].getsockname()) as viewer:
+                at_once = struct.pack("ii", 1, 0)
+                viewer.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, at_once)
+            await over.wait()
+
+    asyncio.run(sent_in_vain())
+    assert "socket.send() raised exception" in caplog.text  # as asyncio has it by itself
+    caplog.clear()
+    with quiet_about_the_gone():
+        asyncio.run(sent_in_vain())
+    assert not caplog.text

@@ -18,6 +18,8 @@ from helpers_serial import KITS, FakePad
 from tactile_graph import Frame
 from tactile_graph.cli import cli
 from tactile_graph.wires import Circle, TrueObject
+from tactile_graph_sources.commands import record
+from tactile_graph_sources.devices.inbox import Inbox
 from tactile_graph_sources.devices.port import Port
 from tactile_graph_sources.devices.reader import Reader
 from tactile_graph_sources.store import read_store
@@ -168,6 +170,62 @@ def test_a_recording_that_is_there_is_not_overwritten(tmp_path: Path, pad: FakeP
     result = run(pad, tmp_path / "a.zarr")
     assert result.exit_code == 2
     assert "is there already" in result.output
+
+
+@pytest.mark.parametrize(
+    ("times", "n_kept", "told"), [(1, 30, []), (2, 4, ["not written: 26 frames that had come"])]
+)
+def test_ctrl_c_ends_the_reading_and_a_second_one_the_writing(
+    tmp_path: Path,
+    pad: FakePad,
+    sends,
+    monkeypatch: pytest.MonkeyPatch,
+    times: int,
+    n_kept: int,
+    told: list[str],
+) -> None:
+    _, data = encoded(30)
+    put, write = Inbox.put, StoreWriter.write
+    come: list[object] = []
+    all_came = threading.Event()
+
+    def counted(self: Inbox, arrived) -> None:
+        put(self, arrived := list(arrived))
+        come.extend(arrived)
+        if len(come) == 30:
+            all_came.set()
+
+    def slow(self: StoreWriter, frame: Frame) -> None:
+        write(self, frame)
+        assert all_came.wait(20.0)
+        if 4 - times < self.n_frames <= 4:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(Inbox, "put", counted)
+    monkeypatch.setattr(StoreWriter, "write", slow)
+    sends(data)
+    result = run(pad, tmp_path / "a.zarr", "--chunk", 2)
+    assert result.exit_code == 0, result.output
+    assert f"a.zarr: {n_kept} frames\n" in result.output
+    assert [line.strip() for line in result.output.splitlines() if "not written" in line] == told
+    assert [f.index for f in read_store(tmp_path / "a.zarr")] == list(range(n_kept))
+
+
+def test_frames_that_pile_up_are_told_once(
+    tmp_path: Path, pad: FakePad, sends, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _, data = encoded(30)
+    monkeypatch.setattr(record, "BEHIND", 2)
+    write = StoreWriter.write
+
+    def slow(self: StoreWriter, frame: Frame) -> None:
+        write(self, frame)
+        time.sleep(0.002)
+
+    monkeypatch.setattr(StoreWriter, "write", slow)
+    sends(data)
+    result = run(pad, tmp_path / "a.zarr", "--frames", 30)
+    assert result.output.count("wait to be written; a larger --chunk is faster") == 1
 
 
 def test_ctrl_c_before_there_is_a_store_says_so(

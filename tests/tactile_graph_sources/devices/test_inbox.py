@@ -53,6 +53,12 @@ def test_closing_lets_a_held_back_reader_go() -> None:
     inbox.close()
     thread.join(10.0)
     assert not thread.is_alive()
+    assert len(inbox) == 2
+    assert [t and t.time_s for t in (inbox.get(0.0), inbox.get(0.0), inbox.get(0.0))] == [
+        0,
+        1,
+        None,
+    ]
 
 
 def test_what_broke_the_reader_reaches_the_taker() -> None:
