@@ -22,6 +22,10 @@ MANY_CELLS, LARGE_SHARE, LARGE_AREA = 0.25, 0.1, 0.5
 """Of all cells so many must count, and those that do not stand out make up so much of the total, or
 of the area where noise lies around zero, before it is told."""
 
+NOISE = 10.0
+"""Times the sum of what is below zero, over the root of the number of cells, that a total must be
+for a load that no footprint shows: four standard deviations of a sum of normal noise."""
+
 
 class Load(NamedTuple):
     """What an image says as a whole.
@@ -150,7 +154,8 @@ class LoadOf:
     With a footprint the area is that of its cells, and the total still that of all cells. The
     centre is of the footprint's cells where those beside it show that they read something at rest:
     one of them less than zero, as noise around zero does, or all of them more. Where noise lies
-    around zero, what is below it counts for the total, too, so that noise adds nothing to it.
+    around zero, what is below it counts for the total, too, so that noise adds nothing to it, and
+    an image is loaded where its footprint is, or the total is more than noise sums up to.
     """
 
     stateless = True
@@ -193,6 +198,7 @@ class LoadOf:
             around_zero = below < 0.0 and self._above <= 0.0
             if around_zero:
                 total += below
+                loaded = its > 0.0 or total > -NOISE * below / math.sqrt(image.values.size)
             if its > 0.0 and (around_zero or least > max(0.0, self._above)):
                 weight, moment_x, moment_y = its, its_x, its_y
         if not math.isfinite(total + moment_x + moment_y):

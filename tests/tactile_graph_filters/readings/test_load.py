@@ -131,6 +131,22 @@ def test_noise_around_zero_adds_nothing_to_a_footprint_s_load():
     assert counts_cells_at_rest(image, found) == ""
 
 
+@pytest.mark.parametrize("shape", [(16, 16), (5, 12), (64, 64)])
+def test_noise_around_zero_loads_nothing_though_it_sums_up_to_something(shape):
+    rng = np.random.default_rng(0)
+    for _ in range(50):
+        values = rng.normal(0.0, 1.0, shape)
+        of_noise = LoadOf()(Image(values), Mask(np.zeros(shape, dtype=bool)))
+        assert not of_noise.loaded
+        assert of_noise.x_cm is None
+        values[1:3, 1:3] += 20.0
+        on = np.zeros(shape, dtype=bool)
+        on[1:3, 1:3] = True
+        assert LoadOf()(Image(values), Mask(on)).loaded
+    # What lies on the whole pad leaves no footprint, and is a load all the same.
+    assert LoadOf()(Image(values + 1.0), Mask(~on & on)).loaded
+
+
 def test_a_footprint_changes_nothing_where_no_cell_reads_less_than_zero():
     """But the area, which is its own: makers of pads print the sum of all cells."""
     image = image_of([[0.0, 0.1, 3.0], [0.2, 0.0, 5.0]])
