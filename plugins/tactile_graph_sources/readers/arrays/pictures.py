@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays.archive import opened
+from tactile_graph_sources.readers.arrays.picture_tags import ORIENTATION, tell_resolution, upright
+from tactile_graph_sources.readers.arrays.tiff import matrices
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
@@ -89,7 +91,9 @@ def _in_turn(reading: Reading, contents: Iterable[tuple[str, bytes]]) -> Iterato
     first: tuple[str, tuple[int, ...]] | None = None
     for name, content in contents:
         for matrix in _pages(reading, content, name):
-            first = first or (name, matrix.shape)
+            if first is None:
+                first = (name, matrix.shape)
+                reading.told.agree(str(reading.path), *matrix.shape)
             if matrix.shape != first[1]:
                 (n, m), (rows, columns) = first[1], matrix.shape
                 raise DataError(
@@ -132,18 +136,16 @@ def _unpacked(reading: Reading, archive: zipfile.ZipFile, name: str) -> bytes:
 
 
 def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]]:
-    import imageio.v3 as iio
-
     where = f"{reading.path}:{name}" if name else str(reading.path)
     n, plugin = 0, _plugin(content)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # readers of pictures warn of what they then refuse
         try:
             _check_size(where, content)
-            for page in iio.imiter(content, plugin=plugin):
-                for matrix in _matrices(np.asarray(page), plugin):
-                    yield _grey(where, matrix)
-                    n += 1
+            read = matrices if plugin == "tifffile" else _with_pillow
+            for page in read(reading, where, content):
+                yield _grey(where, page)
+                n += 1
         except DataError:
             raise
         except Exception as error:  # every library below imageio has errors of its own
@@ -189,16 +191,19 @@ def _plugin(content: bytes) -> str:
     return "tifffile"
 
 
-def _matrices(page: NDArray[Any], plugin: str) -> Iterator[NDArray[Any]]:
-    """Yield the pictures of what may be a stack of pages that TIFF holds together.
+def _with_pillow(reading: Reading, where: str, content: bytes) -> Iterator[NDArray[Any]]:
+    """Yield the pages of what is no TIFF; a third axis is that of colours, or of grey and how much
+    shines through."""
+    import imageio.v3 as iio
+    from PIL import Image as Picture
 
-    In other pictures a third axis is that of colours, or of grey and how much shines through.
-    """
-    stacked = page.ndim == 3 and page.shape[2] not in (3, 4) and plugin == "tifffile"
-    if page.ndim == 4 or stacked:
-        yield from page
-    else:
-        yield page
+    with Picture.open(io.BytesIO(content)) as picture:
+        told = "exif" in picture.info  # to ask a PNG without it unpacks the picture
+        orientation = picture.getexif().get(ORIENTATION, 1) if told else 1
+        if dots := picture.info.get("dpi"):
+            tell_resolution(reading, dots, 1.0)
+    for page in iio.imiter(content, plugin="pillow"):
+        yield upright(reading, np.asarray(page), orientation)
 
 
 def _grey(where: str, page: NDArray[Any]) -> NDArray[Any]:
