@@ -20,6 +20,7 @@ from tactile_graph_sources.readers.arrays.archive import mapped, opened
 from tactile_graph_sources.readers.arrays.datasets import (
     Held,
     frames_of,
+    hint_on,
     is_stack,
     laid_of,
     numbered,
@@ -304,7 +305,7 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str, bool]:
     if not outlines and arrays.held:
         raise DataError(where, f"it holds no array but {one_of(arrays.held)}; {_UNPACK}")
     deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
-    hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
+    hint = f"; {hint_on(deep[0], outlines[deep[0]][0], 'array')}" if deep else ""
     if fields := [n for n, (_, t) in outlines.items() if t.names]:
         hint = f"; save the field of {fields[0]!r} with the cells: array[field]"
     if odd := [n for n, (s, t) in outlines.items() if t.kind == "U" and len(s) in (2, 3)]:
