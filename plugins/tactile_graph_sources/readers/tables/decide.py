@@ -320,7 +320,10 @@ def _long(base: Layout, table: Table, told: Told) -> Layout:
         role = "row" if apart[0] is None else "column"
         what = (
             f"its header names row ({names['row']!r}) and column ({names['column']!r}), but what "
-            f"stands under {names[role]!r} are no places on a grid; write whole numbers there"
+            f"stands under {names[role]!r} are no places on a grid; cells that lie anywhere, as on "
+            "a skin, are not read: resample each frame to a grid, in Python with "
+            "scipy.interpolate.griddata; where they lie on one, write the numbers of rows and "
+            "columns there"
         )
         return replace(base, kind="unclear", trouble=what)
     if not all(apart):
