@@ -1,12 +1,14 @@
-"""What pictures say beside their values: which side is up, how many dots lie on an inch."""
+"""What pictures say beside their values: how large they are, which side is up, dots an inch."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.reading import Reading
 
 ORIENTATION = 274
@@ -14,6 +16,39 @@ ORIENTATION = 274
 CM_OF_INCH = 2.54
 PUT_BY_PROGRAMS = (1.0, 72.0, 96.0)
 """Dots an inch that stand in pictures of which nobody measured it."""
+
+MOST_PIXELS = 4_000_000
+MOST_TIMES = 200
+"""Pixels for each byte of a file of many pages."""
+
+
+def refuse_large(
+    where: str, sides: Iterable[tuple[int, int]], n_values: int = 0, n_bytes: int = 1
+) -> None:
+    """Refuse a picture by what it says of its size, before it is unpacked.
+
+    Parameters
+    ----------
+    where : str
+    sides : iterable of (int, int)
+        Rows and columns of its pages.
+    n_values, n_bytes : int
+        Those of all pages, and of the file that holds them.
+
+    Raises
+    ------
+    DataError
+        If a page is too large, or the file unpacks to far more than it holds.
+    """
+    for rows, columns in sides:
+        if rows * columns > MOST_PIXELS:
+            raise DataError(where, f"the picture has {rows} x {columns} pixels")
+    if n_values > max(MOST_PIXELS, MOST_TIMES * n_bytes):
+        raise DataError(
+            where,
+            f"its pages hold {n_values} pixels, {n_values // n_bytes} for each byte; allowed "
+            f"are {MOST_TIMES} beyond {MOST_PIXELS}",
+        )
 
 
 def upright(reading: Reading, picture: NDArray[Any], orientation: object) -> NDArray[Any]:

@@ -18,7 +18,12 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays.archive import opened
-from tactile_graph_sources.readers.arrays.picture_tags import ORIENTATION, tell_resolution, upright
+from tactile_graph_sources.readers.arrays.picture_tags import (
+    ORIENTATION,
+    refuse_large,
+    tell_resolution,
+    upright,
+)
 from tactile_graph_sources.readers.arrays.tiff import matrices
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
@@ -31,9 +36,6 @@ _BMP_HEAD = 14
 """Bytes, of which four are always 0."""
 MOST_BYTES = 1 << 28
 MOST_UNPACKED = 1 << 26
-MOST_PIXELS = 4_000_000
-MOST_TIMES = 200
-"""Pixels for each byte of a file of many pages."""
 
 
 def recognises(head: Head) -> bool:
@@ -141,7 +143,6 @@ def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # readers of pictures warn of what they then refuse
         try:
-            _check_size(where, content)
             read = matrices if plugin == "tifffile" else _with_pillow
             for page in read(reading, where, content):
                 yield _grey(where, page)
@@ -154,31 +155,6 @@ def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]
                 raise DataError(where, f"the picture cannot be read: {text}") from error
             what = "cannot be read; the pages before it are kept"
             reading.damaged(f"page {n}", what, n_frames=0)  # nobody knows how many come after it
-
-
-def _check_size(where: str, content: bytes) -> None:
-    """Refuse a picture by what it says of its size, before it is unpacked."""
-    n_values = 0
-    if _plugin(content) == "pillow":
-        from PIL import Image as Picture
-
-        with Picture.open(io.BytesIO(content)) as picture:
-            sides = [picture.size[::-1]]
-    else:
-        import tifffile
-
-        with tifffile.TiffFile(io.BytesIO(content)) as file:
-            sides = [(s.keyframe.imagelength, s.keyframe.imagewidth) for s in file.series]
-            n_values = sum(int(s.size) for s in file.series)
-    for rows, columns in sides:
-        if rows * columns > MOST_PIXELS:
-            raise DataError(where, f"the picture has {rows} x {columns} pixels")
-    if n_values > max(MOST_PIXELS, MOST_TIMES * len(content)):
-        raise DataError(
-            where,
-            f"its pages hold {n_values} pixels, {n_values // len(content)} for each byte; allowed "
-            f"are {MOST_TIMES} beyond {MOST_PIXELS}",
-        )
 
 
 def _plugin(content: bytes) -> str:
@@ -198,6 +174,7 @@ def _with_pillow(reading: Reading, where: str, content: bytes) -> Iterator[NDArr
     from PIL import Image as Picture
 
     with Picture.open(io.BytesIO(content)) as picture:
+        refuse_large(where, [picture.size[::-1]])
         told = "exif" in picture.info  # to ask a PNG without it unpacks the picture
         orientation = picture.getexif().get(ORIENTATION, 1) if told else 1
         if dots := picture.info.get("dpi"):

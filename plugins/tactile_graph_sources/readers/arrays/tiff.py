@@ -13,6 +13,7 @@ from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.arrays.picture_tags import (
     CM_OF_INCH,
     ORIENTATION,
+    refuse_large,
     tell_resolution,
     upright,
 )
@@ -43,11 +44,14 @@ def matrices(reading: Reading, where: str, content: bytes) -> Iterator[NDArray[A
     Raises
     ------
     DataError
-        If a pixel has samples, or the file channels, that are neither grey nor colours.
+        If it is too large, or a pixel has samples, or the file channels, that are neither grey nor
+        colours.
     """
     import tifffile
 
     with tifffile.TiffFile(io.BytesIO(content)) as file:
+        sides = [(s.keyframe.imagelength, s.keyframe.imagewidth) for s in file.series]
+        refuse_large(where, sides, sum(int(s.size) for s in file.series), len(content))
         for series in file.series:
             page = series.keyframe
             _check_channels(reading, where, series)
