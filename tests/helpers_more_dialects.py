@@ -260,7 +260,9 @@ def _stacks() -> Iterator[Dialect]:
                    values=_slow(40, 10, 7), told={"rows": 10, "columns": 7})  # fmt: skip
     fields = np.zeros(3, dtype=[("t", "f8"), ("p", "u2", (8, 8))])
     yield _refused("NumPy, an array of fields", npy(fields), "array['p']")
-    yield _refused("NumPy, channels along the last axis", npy(np.zeros((5, 8, 8, 2))), "[..., 0]")
+    yield _refused(
+        "NumPy, channels along the last axis", npy(np.zeros((5, 8, 8, 2))), "[..., channel]"
+    )
     yield _refused("NumPy, cells down a column", npy(SQUARE.reshape(20, 64).T),
                    "20 frames of 8 x 8 with their cells in a column",
                    told={"rows": 8, "columns": 8})  # fmt: skip

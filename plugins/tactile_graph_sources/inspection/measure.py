@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.wires import Frame
 from tactile_graph_pads.circuits.ghosts import ghosts_in
+from tactile_graph_sources.inspection.sign import sign_is_lost
 from tactile_graph_sources.readers.sequence.leaps import is_leap
 
 Stack = NDArray[np.float64]
@@ -65,6 +66,8 @@ class Measured:
         The smallest difference of two readings, where all are whole multiples of it.
     full_scale : int, optional
         Where readings are whole and reach the end of a converter's range.
+    sign_lost : bool
+        Whether they look like signed numbers of 16 bits that were written without their sign.
     noise : float, optional
         Standard deviation of a cell at rest from frame to frame, that of the quieter quarter of
         the cells: the others may be pressed all the time. None with fewer than five frames.
@@ -97,6 +100,7 @@ class Measured:
     highest: float
     step: float | None
     full_scale: int | None
+    sign_lost: bool
     noise: float | None
     offset: float
     offset_spread: float
@@ -137,6 +141,7 @@ def measure(frames: Sequence[Frame]) -> Measured:
         values = stack.ravel() if whole else stack[finite]
         step = _step(values)
         lowest, highest = _ends(values)
+        sign_lost = sign_is_lost(values, step, highest)
         del values
         filled = stack
         if not whole:
@@ -165,6 +170,7 @@ def measure(frames: Sequence[Frame]) -> Measured:
             highest,
             step,
             _full_scale(step, highest),
+            sign_lost,
             noise,
             offset,
             float(spread[1] - spread[0]),

@@ -151,7 +151,9 @@ def _range(measured: Measured, unit: str) -> str:
     text = f"{_number(measured.lowest)} to {_number(measured.highest)} {unit}"
     if measured.step is not None:
         text += f", in steps of {_number(measured.step)}"
-    if measured.full_scale is not None:
+    if measured.sign_lost:
+        text += "; those just below 65536 look like negative numbers written without their sign"
+    elif measured.full_scale is not None:
         text += f"; {measured.full_scale} is a converter's end: such readings may be cut off"
     return text
 

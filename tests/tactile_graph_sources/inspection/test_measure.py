@@ -94,3 +94,12 @@ def test_frames_of_a_matrix_without_isolation_are_counted(still: bool) -> None:
         films = [read(its, seed=k, circuit=circuit) for k, its in enumerate(order)]
         found = measure([Frame.of(its.values, index=k) for k, its in enumerate(films)])
         assert (found.n_ghosts, found.n_telling) == (n_ghosts, 8)
+
+
+def test_signed_numbers_written_without_their_sign_are_noticed() -> None:
+    counts = np.random.default_rng(0).normal(0, 4, (20, 8, 8)).round()
+    counts[5:, 2:4, 2:4] += 800
+    wrapped, clipped = counts.astype("i2").view("u2"), counts + 10
+    clipped[5:, 5, 5] = 65535
+    for values, lost in ((wrapped, True), (counts, False), (clipped, False), (wrapped / 7, False)):
+        assert measure([Frame.of(v.astype(float)) for v in values]).sign_lost == lost

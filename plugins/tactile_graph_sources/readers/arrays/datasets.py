@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
-from tactile_graph_sources.readers.arrays.stack import MOST_CHANNELS, stack_of
+from tactile_graph_sources.readers.arrays.stack import MOST_CHANNELS, one_of_channels, stack_of
 from tactile_graph_sources.readers.arrays.times import TEXTS, in_seconds
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
 from tactile_graph_sources.readers.laid import Laid, laid_in
@@ -187,7 +187,7 @@ def chosen(
         remedy = f"; of {most[0]!r}: {others[most[0]].remedy}" if most else ""
         deep = [n for n, shape in shapes.items() if len(shape) > 2 and 0 not in shape]
         if deep and not likely:
-            remedy = f"; {_hint(deep[0], shapes[deep[0]], word)}"
+            remedy = f"; {hint_on(deep[0], shapes[deep[0]], word)}"
         told = f"no matrix or stack of matrices in it; its {word}s: {listed}{remedy}"
         raise DataError(where, told)
     elif len(stacks) > 1:
@@ -203,12 +203,12 @@ def chosen(
     return name
 
 
-def _hint(name: str, shape: tuple[int, ...], word: str) -> str:
+def hint_on(name: str, shape: tuple[int, ...], word: str) -> str:
     """Return what to do with an array that has the axes of no stack."""
     if len(shape) == 3:
         return f"{name!r} is read where sensor names it"
     if shape[-1] <= MOST_CHANNELS:
-        return f"save one channel of {name!r}, array[..., 0], as a new {word}"
+        return f"save one channel of {name!r} as a new {word}: {one_of_channels('...,', -1)}"
     return f"save each sensor of {name!r} as a new {word}"
 
 

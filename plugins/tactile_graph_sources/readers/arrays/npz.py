@@ -20,9 +20,15 @@ from tactile_graph_sources.readers.arrays.archive import mapped, opened
 from tactile_graph_sources.readers.arrays.datasets import (
     Held,
     frames_of,
+    hint_on,
     is_stack,
     laid_of,
     numbered,
+)
+from tactile_graph_sources.readers.arrays.masks import (
+    masks_among,
+    refuse_unclear,
+    without_invalid,
 )
 from tactile_graph_sources.readers.arrays.stack import Axes, stack_of
 from tactile_graph_sources.readers.arrays.times import time_among
@@ -267,6 +273,8 @@ def _foreign(reading: Reading, arrays: Archive) -> Held:
     reading.refuse_settings(*OF_TIMES)
     values, what, known = _only(reading, arrays)
     outlines = {name: arrays.outline(name) for name in arrays.names}
+    masks = {n: arrays.load(n) for n in masks_among(outlines) if n != reading.told.sensor}
+    values = without_invalid(reading, values, masks)
     lines = {n: t.kind for n, (s, t) in outlines.items() if len(s) == 1}
     time = time_among(n for n, kind in lines.items() if kind in "iufMm")
     time = time or time_among(n for n, kind in lines.items() if kind in "US")
@@ -286,8 +294,12 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str, bool]:
         reading.sensors[asked] = None
         return _checked(reading, arrays, asked), f"array {asked!r}", False
     outlines = {name: arrays.outline(name) for name in arrays.names}
-    shapes_of = {n: s for n, (s, t) in outlines.items() if t.kind in "buif"}
+    masks = masks_among(outlines)
+    shapes_of = {n: s for n, (s, t) in outlines.items() if t.kind in "buif" and n not in masks}
     stacks = [n for n, s in shapes_of.items() if len(s) in (2, 3) or is_stack(s)]
+    if len(stacks) == 1:
+        take_all = f"or take all cells, such as sensor={stacks[0]}"
+        refuse_unclear(where, outlines, take_all)
     if len(stacks) > 1 and (frames := numbered({n: shapes_of[n] for n in stacks})):
         arrays.check_sizes(frames)
         what = f"arrays {frames[0]!r} to {frames[-1]!r}"
@@ -304,7 +316,7 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str, bool]:
     if not outlines and arrays.held:
         raise DataError(where, f"it holds no array but {one_of(arrays.held)}; {_UNPACK}")
     deep = [n for n, (s, t) in outlines.items() if len(s) == 4 and t.kind in "buif"]
-    hint = f"; save each sensor of {deep[0]!r} as an array of its own" if deep else ""
+    hint = f"; {hint_on(deep[0], outlines[deep[0]][0], 'array')}" if deep else ""
     if fields := [n for n, (_, t) in outlines.items() if t.names]:
         hint = f"; save the field of {fields[0]!r} with the cells: array[field]"
     if odd := [n for n, (s, t) in outlines.items() if t.kind == "U" and len(s) in (2, 3)]:
@@ -369,6 +381,9 @@ def _ours(reading: Reading, arrays: Archive) -> _Ours:
     arrays.check_sizes([name for name in OURS if name in arrays.names])
     # Who writes our files says the quantity, and that frames lie along the first axis.
     axes: Axes = "known" if "quantity" in arrays.names else "asked"
+    if axes == "asked":
+        outlines = {name: arrays.outline(name) for name in arrays.names}
+        refuse_unclear(arrays.where, outlines, "or leave it out to take all cells")
     values = _checked(reading, arrays, "values", axes)
     values = stack_of(reading, values, "array 'values'", axes)
     n = len(values)

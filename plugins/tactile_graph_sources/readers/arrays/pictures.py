@@ -18,6 +18,13 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph.wires import Frame
 from tactile_graph_sources.readers.arrays.archive import opened
+from tactile_graph_sources.readers.arrays.picture_tags import (
+    ORIENTATION,
+    refuse_large,
+    tell_resolution,
+    upright,
+)
+from tactile_graph_sources.readers.arrays.tiff import matrices
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
@@ -29,9 +36,6 @@ _BMP_HEAD = 14
 """Bytes, of which four are always 0."""
 MOST_BYTES = 1 << 28
 MOST_UNPACKED = 1 << 26
-MOST_PIXELS = 4_000_000
-MOST_TIMES = 200
-"""Pixels for each byte of a file of many pages."""
 
 
 def recognises(head: Head) -> bool:
@@ -89,7 +93,9 @@ def _in_turn(reading: Reading, contents: Iterable[tuple[str, bytes]]) -> Iterato
     first: tuple[str, tuple[int, ...]] | None = None
     for name, content in contents:
         for matrix in _pages(reading, content, name):
-            first = first or (name, matrix.shape)
+            if first is None:
+                first = (name, matrix.shape)
+                reading.told.agree(str(reading.path), *matrix.shape)
             if matrix.shape != first[1]:
                 (n, m), (rows, columns) = first[1], matrix.shape
                 raise DataError(
@@ -132,18 +138,15 @@ def _unpacked(reading: Reading, archive: zipfile.ZipFile, name: str) -> bytes:
 
 
 def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]]:
-    import imageio.v3 as iio
-
     where = f"{reading.path}:{name}" if name else str(reading.path)
     n, plugin = 0, _plugin(content)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # readers of pictures warn of what they then refuse
         try:
-            _check_size(where, content)
-            for page in iio.imiter(content, plugin=plugin):
-                for matrix in _matrices(np.asarray(page), plugin):
-                    yield _grey(where, matrix)
-                    n += 1
+            read = matrices if plugin == "tifffile" else _with_pillow
+            for page in read(reading, where, content):
+                yield _grey(where, page)
+                n += 1
         except DataError:
             raise
         except Exception as error:  # every library below imageio has errors of its own
@@ -152,31 +155,6 @@ def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]
                 raise DataError(where, f"the picture cannot be read: {text}") from error
             what = "cannot be read; the pages before it are kept"
             reading.damaged(f"page {n}", what, n_frames=0)  # nobody knows how many come after it
-
-
-def _check_size(where: str, content: bytes) -> None:
-    """Refuse a picture by what it says of its size, before it is unpacked."""
-    n_values = 0
-    if _plugin(content) == "pillow":
-        from PIL import Image as Picture
-
-        with Picture.open(io.BytesIO(content)) as picture:
-            sides = [picture.size[::-1]]
-    else:
-        import tifffile
-
-        with tifffile.TiffFile(io.BytesIO(content)) as file:
-            sides = [(s.keyframe.imagelength, s.keyframe.imagewidth) for s in file.series]
-            n_values = sum(int(s.size) for s in file.series)
-    for rows, columns in sides:
-        if rows * columns > MOST_PIXELS:
-            raise DataError(where, f"the picture has {rows} x {columns} pixels")
-    if n_values > max(MOST_PIXELS, MOST_TIMES * len(content)):
-        raise DataError(
-            where,
-            f"its pages hold {n_values} pixels, {n_values // len(content)} for each byte; allowed "
-            f"are {MOST_TIMES} beyond {MOST_PIXELS}",
-        )
 
 
 def _plugin(content: bytes) -> str:
@@ -189,16 +167,20 @@ def _plugin(content: bytes) -> str:
     return "tifffile"
 
 
-def _matrices(page: NDArray[Any], plugin: str) -> Iterator[NDArray[Any]]:
-    """Yield the pictures of what may be a stack of pages that TIFF holds together.
+def _with_pillow(reading: Reading, where: str, content: bytes) -> Iterator[NDArray[Any]]:
+    """Yield the pages of what is no TIFF; a third axis is that of colours, or of grey and how much
+    shines through."""
+    import imageio.v3 as iio
+    from PIL import Image as Picture
 
-    In other pictures a third axis is that of colours, or of grey and how much shines through.
-    """
-    stacked = page.ndim == 3 and page.shape[2] not in (3, 4) and plugin == "tifffile"
-    if page.ndim == 4 or stacked:
-        yield from page
-    else:
-        yield page
+    with Picture.open(io.BytesIO(content)) as picture:
+        refuse_large(where, [picture.size[::-1]])
+        told = "exif" in picture.info  # to ask a PNG without it unpacks the picture
+        orientation = picture.getexif().get(ORIENTATION, 1) if told else 1
+        if dots := picture.info.get("dpi"):
+            tell_resolution(reading, dots, 1.0)
+    for page in iio.imiter(content, plugin="pillow"):
+        yield upright(reading, np.asarray(page), orientation)
 
 
 def _grey(where: str, page: NDArray[Any]) -> NDArray[Any]:

@@ -16,6 +16,8 @@ from tactile_graph_sources.readers.tables.evidence import row_lengths
 SMALLEST_SURE_SQUARE, LEAST_FRAMED = 36, 16
 LONGEST_UNTOLD = 4
 MOST_CHANNELS = 4
+MOST_LAST, FEWEST_BESIDE = 5, 6
+"""Length of a last axis that may be that of channels, and those of the other two beside it."""
 FEWEST_ALONG, MOST_ALONG = 4, 100
 ALIKE, UNLIKE = 2.5, 4.0
 """Times the difference of neighbours along one axis that those along another are, at most where
@@ -25,6 +27,7 @@ VERY_ALIKE, CLEARER = 1.5, 2.0
 MAD_TO_SD = 1.4826
 _AS_REAL = "such, in Python: numpy.save('out.npy', array.{})"
 ASSUMED_FIRST = "frames assumed to lie along the first axis, {} of {} x {}"
+ASSUMED_ONE = "{} lines of {} values assumed to be the rows of one matrix"
 LAST_IS_TIME = 4
 """Times the other two: a last axis longer than that is more likely the frames'."""
 
@@ -71,6 +74,8 @@ def stack_of(
     rows, columns = reading.told.rows, reading.told.columns
     if array.ndim > 3:
         array = without_single_axes(array)
+    if array.ndim == 3 and axes != "known" and reading.told.shape != array.shape[1:]:
+        _refuse_channels(reading, array, name, axes)
     if rows is not None and columns is not None:
         n_cells = rows * columns
         if array.ndim == 2 and array.shape != (rows, columns) and n_cells in array.shape:
@@ -95,6 +100,8 @@ def stack_of(
     if rows is None or columns is None:
         if array.ndim == 2:
             _refuse_frames_in_a_row(where, array, name)
+            if min(array.shape) > 1 and axes != "known":
+                reading.assume(ASSUMED_ONE.format(*array.shape))
         elif axes != "known":
             _ask_axes(reading, array, name, axes)
     told = "as rows and columns say" if rows and columns else "a matrix along each first index"
@@ -109,8 +116,18 @@ def _as_matrices(shape: tuple[int, ...]) -> str:
     if len(shape) < 4:
         return "array.reshape(-1, rows, columns)"
     if shape[-1] <= MOST_CHANNELS:
-        return "array[..., 0], or another of its last axis"
+        return one_of_channels("...,", -1)
+    if shape[-3] <= MOST_CHANNELS:
+        return one_of_channels(f"{':, ' * (len(shape) - 3)}".rstrip(), len(shape) - 3)
     return f"array.reshape(-1, {shape[-2]}, {shape[-1]}), or each sensor alone"
+
+
+def one_of_channels(before: str, axis: int) -> str:
+    """Return what to save of channels along an axis, with what stands before it in brackets."""
+    return (
+        f"array[{before} channel] with the number of the channel that is measured, or of colours "
+        f"their mean, array.mean(axis={axis})"
+    )
 
 
 def without_single_axes(array: NDArray[Any]) -> NDArray[Any]:
@@ -196,16 +213,25 @@ def _of_equal_sides(reading: Reading, array: NDArray[Any]) -> NDArray[Any]:
     return array
 
 
+def _refuse_channels(reading: Reading, array: NDArray[Any], name: str, axes: Axes) -> None:
+    """Refuse a stack whose short last axis may be that of colours or channels of one frame."""
+    n, rows, columns = shape = array.shape
+    colours = columns in (3, 4) and min(n, rows) > 4 and reading.told.shape is None
+    few = 1 < columns <= MOST_LAST and min(n, rows) >= FEWEST_BESIDE and axes == "asked"
+    if colours or (few and _axes_told(array) != "first"):
+        raise DataError(
+            str(reading.path),
+            f"{name} has shape {shape}: {n} frames of {rows} x {columns}, or a picture of "
+            f"{columns} colours or channels; of these save {one_of_channels('...,', -1)}; of "
+            f"{columns} frames of {n} x {rows} save numpy.moveaxis(array, -1, 0); else give rows "
+            "and columns",
+        )
+
+
 def _ask_axes(reading: Reading, array: NDArray[Any], name: str, axes: Axes) -> None:
     """Refuse a stack whose frames as likely lie along the last axis; what nothing says is told."""
     where, shape = str(reading.path), array.shape
     n, rows, columns = shape
-    if columns in (3, 4) and min(n, rows) > 4:
-        raise DataError(
-            where,
-            f"{name} has shape {shape}: {n} frames of {rows} x {columns}, or a picture of "
-            f"{columns} colours; give rows and columns, or save one colour",
-        )
     last_is_time = (n == rows != columns) or columns > LAST_IS_TIME * max(n, rows)
     told = "" if axes == "outline" else _axes_told(array)
     last_is_time = last_is_time or told == "last"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import replace
 from math import isqrt
@@ -31,6 +32,8 @@ MOST_COLUMNS_UNTOLD, MOST_LINES_UNTOLD = 63, 256
 LEAST_FRAMED = 16
 """Values of a line that may be a frame by how they lie together."""
 FEWEST_NAMED, CELL_AND_VALUE = 4, 2
+_OF_COLUMN = re.compile(r"\d*|[AB]?[A-Z]")
+"""What a column is called that has no name, as a spreadsheet's."""
 LONGEST_UNTOLD = 4
 """Times its breadth: a matrix longer than that is more likely many frames."""
 
@@ -231,9 +234,11 @@ def _by_numbers(table: Table, base: Layout, n: int) -> tuple[str, int, str]:
     period = None if clear else line_period(cells)
     long = max(n, width) > LONGEST_UNTOLD * min(n, width)
     matrix_like = n > 1 and not long and n <= MOST_LINES_UNTOLD and table.whole
+    names = _names_of_cells(table, base)
     question = (
         f"{n} lines of {width} values could be one matrix or a frame a line"
         + (f" (of {lengths[0][0]} x {lengths[0][1]} cells, as they lie)" if framed else "")
+        + (f"; its columns have names ({names[0]}, {names[1]}, …), as cells have" if names else "")
         + "; give the settings rows and columns"
     )
     if period is not None:
@@ -256,7 +261,8 @@ def _by_numbers(table: Table, base: Layout, n: int) -> tuple[str, int, str]:
             ),
         )
     if n == width:
-        return ("unclear", 0, question) if framed else ("stacked", n, "as many lines as columns")
+        why = "as many lines as columns"
+        return ("unclear", 0, question) if framed or names else ("stacked", n, why)
     if square and not matrix_like:
         return "flat", 0, f"{width} values a line, a square number"
     if square:
@@ -264,9 +270,16 @@ def _by_numbers(table: Table, base: Layout, n: int) -> tuple[str, int, str]:
         if clarity < CLEAR or (np.isnan(clarity) and width >= SMALLEST_SURE_SQUARE):
             return "flat", 0, f"{width} values a line, which lie together as a square"
         return "unclear", 0, question
-    if matrix_like and width <= MOST_COLUMNS_UNTOLD and not framed:
+    if matrix_like and width <= MOST_COLUMNS_UNTOLD and not framed and not names:
         return "stacked", n, f"{n} lines of {width} values"
     return "unclear", 0, question
+
+
+def _names_of_cells(table: Table, base: Layout) -> list[str]:
+    """Return the names of the columns of cells; none where they are numbered or lettered."""
+    said = table.named.names
+    names = [said[k] for k in base.cells] if said and len(base.cells) > 1 else []
+    return [] if all(map(_OF_COLUMN.fullmatch, names)) else names
 
 
 def _flat(base: Layout, table: Table, told: Told, width: int, why: str) -> Layout:

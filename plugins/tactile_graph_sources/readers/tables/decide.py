@@ -8,7 +8,7 @@ A table seldom says what it is. The rules, in order:
 4. groups of equal lines between blank lines (or lines such as ``Frame 3``): stacked matrices,
    unless between blank lines each has a time of its own or cells lie together as a frame's do;
 5. names of cells, a time or a number before the values: a frame a line;
-6. as many lines as columns, or nearly: one matrix;
+6. as many lines as columns, or nearly, which have no names: one matrix;
 7. a square number of values a line: a frame a line;
 8. anything else is asked for, never guessed, and so is what the numbers themselves speak against:
    a first column that climbs, cells that lie together in rows of another length.
@@ -23,6 +23,7 @@ from dataclasses import replace
 import numpy as np
 
 from tactile_graph.errors import one_of
+from tactile_graph_sources.readers.tables.axes_named import axes_question
 from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import counts_up, spacing
@@ -91,6 +92,7 @@ def layout_of(
         or _several_units(table)
         or _cells_by_line(table, roles)
         or _frames_by_column(table)
+        or ("" if told.of_columns.cells else axes_question(table))
     )
     if trouble:
         return replace(base, trouble=trouble)
@@ -318,7 +320,10 @@ def _long(base: Layout, table: Table, told: Told) -> Layout:
         role = "row" if apart[0] is None else "column"
         what = (
             f"its header names row ({names['row']!r}) and column ({names['column']!r}), but what "
-            f"stands under {names[role]!r} are no places on a grid; write whole numbers there"
+            f"stands under {names[role]!r} are no places on a grid; cells that lie anywhere, as on "
+            "a skin, are not read: resample each frame to a grid, in Python with "
+            "scipy.interpolate.griddata; where they lie on one, write the numbers of rows and "
+            "columns there"
         )
         return replace(base, kind="unclear", trouble=what)
     if not all(apart):

@@ -34,7 +34,7 @@ _TWO_NUMBERS = re.compile(r"([^\W\d]*?_?\d+)[\W_]+(\d+)\W*")
 _WORDS = {
     "sensor", "sensors", "device", "dev", "pad", "finger", "hand", "foot", "insole", "glove",
     "module", "mod", "board", "array", "unit", "capteur", "sensore", "matte", "fuß", "fuss",
-    "main", "mano", "pied",
+    "main", "mano", "pied", "triangle", "patch",
 }  # fmt: skip
 """What sensors that are numbered are called; other numbered words are rows and columns."""
 _LINE_COLUMNS = {

@@ -52,6 +52,44 @@ def test_the_axis_of_frames_is_told_where_nothing_says_it(
     assert told not in report.counts
 
 
+@pytest.mark.parametrize("n", [2, 3, 4, 5])
+def test_a_short_last_axis_is_asked_about_as_channels(n: int, tmp_path: Path) -> None:
+    noise = np.random.default_rng(0).normal(20, 1, (48, 64, n))
+    told = f"48 frames of 64 x {n}, or a picture of {n} colours or channels; .*array.mean"
+    for content in (npy_bytes(noise), npz_bytes(frames=noise)):
+        path = write(tmp_path, content)
+        for settings in ({}, {"rows": 48, "columns": 64}):
+            with pytest.raises(DataError, match=told):
+                frames_of(path, **settings)
+        assert len(frames_of(path, rows=64, columns=n)[0]) == 48
+    frames, report = frames_of(write(tmp_path, npy_bytes(moving(30, 12, 5))))
+    assert len(frames) == 30  # its neighbours along rows and columns are alike
+    assert not any("assumed to lie" in what for what in report.counts)
+
+
+@pytest.mark.parametrize(
+    ("shape", "words"),
+    [
+        ((10, 24, 32, 3), r"array\[..., channel\] .*array\.mean\(axis=-1\)"),
+        ((10, 3, 24, 32), r"array\[:, channel\] .*array\.mean\(axis=1\)"),
+    ],
+)
+def test_of_channels_on_a_fourth_axis_one_is_to_be_chosen(
+    shape: tuple[int, ...], words: str, tmp_path: Path
+) -> None:
+    with pytest.raises(DataError, match=words):
+        frames_of(write(tmp_path, npy_bytes(np.zeros(shape))))
+
+
+def test_a_matrix_is_told_as_one_where_its_lines_could_be_frames(tmp_path: Path) -> None:
+    told = "recordings with 30 lines of 60 values assumed to be the rows of one matrix"
+    values = np.random.default_rng(0).normal(20, 1, (30, 60))
+    for content in (npy_bytes(values), npz_bytes(frames=values)):
+        path = write(tmp_path, content)
+        assert frames_of(path)[1].counts[told] == 1
+        assert told not in frames_of(path, rows=30, columns=60)[1].counts
+
+
 def test_times_say_along_which_axis_frames_lie(tmp_path: Path) -> None:
     noise = np.random.default_rng(0).normal(20, 1, (12, 9, 14))
     times = 0.02 * np.arange(12)

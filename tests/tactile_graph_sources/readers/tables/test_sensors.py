@@ -71,6 +71,9 @@ def test_sensors_of_different_sizes_and_numbered_ones(tmp_path: Path) -> None:
     assert (read(path, sensor="thumb", rows=4, columns=6) == THUMB).all()
     path.write_text(wide(("sensor1", "sensor2"), (LEFT, RIGHT), NAMES["taxels"]))
     assert (read(path, sensor="sensor2") == RIGHT).all()
+    path.write_text(wide(("triangle0", "triangle1"), (LEFT, RIGHT), NAMES["taxels"]))
+    with pytest.raises(DataError, match=r"several sensors: triangle0 \(64 cells\)"):
+        read(path)
 
 
 def test_few_long_rows_may_be_square_sensors_and_both_can_be_said(tmp_path: Path) -> None:

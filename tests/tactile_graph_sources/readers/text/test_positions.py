@@ -141,3 +141,11 @@ def test_a_told_pitch_keeps_the_first_centre_where_it_is_stated(tmp_path: Path) 
 def test_positions_in_no_unit_of_length_say_no_origin(tmp_path: Path) -> None:
     path = write(tmp_path, placed("frame,x,y,value", "{k},{c}.5,{r}.5,{v}"))
     assert frames_of(path)[0][0].image.origin_cm == (0.0, 0.0)
+
+
+def test_cells_that_lie_anywhere_are_to_be_resampled(tmp_path: Path) -> None:
+    places = np.random.default_rng(0).uniform(0, 90, (40, 2))
+    lines = [f"{k},{i},{x:.2f},{y:.2f},220.5" for k in range(5) for i, (x, y) in enumerate(places)]
+    path = write(tmp_path, "\n".join(["frame,taxel,x_mm,y_mm,value", *lines]) + "\n")
+    with pytest.raises(DataError, match=r"no places on a grid; .* resample each frame to a grid"):
+        frames_of(path)
