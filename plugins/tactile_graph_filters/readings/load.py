@@ -22,9 +22,10 @@ MANY_CELLS, LARGE_SHARE, LARGE_AREA = 0.25, 0.1, 0.5
 """Of all cells so many must count, and those that do not stand out make up so much of the total, or
 of the area where noise lies around zero, before it is told."""
 
-NOISE = 10.0
-"""Times the sum of what is below zero, over the root of the number of cells, that a total must be
-for a load that no footprint shows: four standard deviations of a sum of normal noise."""
+NOISE, NEARLY_ALL = 5.0, 0.9
+"""Times the sum of all readings' sizes, over the root of their number, that a total must be for a
+load that no footprint shows: four standard deviations of a sum of normal noise. On pads of few
+cells so much of it at least, as noise is hardly ever of one sign."""
 
 
 class Load(NamedTuple):
@@ -197,8 +198,9 @@ class LoadOf:
             loaded, weight = total > 0.0, total
             around_zero = below < 0.0 and self._above <= 0.0
             if around_zero:
+                share = min(NOISE / math.sqrt(image.values.size), NEARLY_ALL)
+                loaded = its > 0.0 or total + below > share * (total - below)
                 total += below
-                loaded = its > 0.0 or total > -NOISE * below / math.sqrt(image.values.size)
             if its > 0.0 and (around_zero or least > max(0.0, self._above)):
                 weight, moment_x, moment_y = its, its_x, its_y
         if not math.isfinite(total + moment_x + moment_y):

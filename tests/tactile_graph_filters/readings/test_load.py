@@ -131,7 +131,7 @@ def test_noise_around_zero_adds_nothing_to_a_footprint_s_load():
     assert counts_cells_at_rest(image, found) == ""
 
 
-@pytest.mark.parametrize("shape", [(16, 16), (5, 12), (64, 64)])
+@pytest.mark.parametrize("shape", [(16, 16), (5, 12), (64, 64), (4, 4)])
 def test_noise_around_zero_loads_nothing_though_it_sums_up_to_something(shape):
     rng = np.random.default_rng(0)
     for _ in range(50):
