@@ -28,6 +28,7 @@ from tactile_graph_sources.readers.sequence.labels import labels_of
 from tactile_graph_sources.readers.sequence.leaps import stacks_with_leaps_told, with_leaps_told
 from tactile_graph_sources.readers.words.names import ColumnsTold
 from tactile_graph_sources.readers.words.told import Told, as_typed
+from tactile_graph_sources.turned_round import Finite, inverted
 
 MOST_NAMED = 5
 OF_FRAMES = ("flat", "stacked")
@@ -55,6 +56,7 @@ def recording(
     value_column: str = "",
     cells: str = "",
     first_cell: Literal[0, 1] | None = None,
+    invert_from: Finite | None = None,
     pad: str | dict[str, Any] | list[str | dict[str, Any]] | None = None,
     report: Report,
 ) -> Iterator[Annotated[Frame, Quantity(of="quantity")]]:
@@ -100,6 +102,8 @@ def recording(
     first_cell : int, optional
         Whether rows and columns count from 0 or from 1 in a table of one cell a line. Where neither
         this nor the cells tell, 1 is assumed and counted in the report.
+    invert_from : float, optional
+        A value v becomes ``invert_from - v``, where readings fall under pressure.
     pad : str, mapping or list of these, optional
         Pads or their YAML files. Recordings of as many rows and columns that say no pitch have that
         of the first such pad; those that can be of none of its grid are counted in the report.
@@ -135,7 +139,7 @@ def recording(
     )
     index = n_places = 0
     for one, label in _files(path, report):
-        found = opened(one, told, report, label)
+        found = opened(one, told, report, label).turned_round(invert_from)
         for frame in found.frames:
             yield frame.numbered(index, n_places)
             index += 1
@@ -152,6 +156,7 @@ def recording_stacked(
     cells: str,
     time_unit: Any,
     time_format: str,
+    invert_from: float | None = None,
     report: Report,
     **placed: Any,
 ) -> Iterator[Frame | FrameStack]:
@@ -161,6 +166,7 @@ def recording_stacked(
     index = n_places = 0
     for one, label in _files(path, report):
         found = opened(one, told, report, label, in_stacks=not told.skip)
+        found = found.turned_round(invert_from)
         for some in found.frames:
             yield some.numbered(index, n_places)
             index += 1 if isinstance(some, Frame) else len(some)
@@ -199,6 +205,12 @@ class Opened(NamedTuple):
     why: Callable[[], str]
     frames: Iterator[Any]
     n_places: Callable[[], int]
+
+    def turned_round(self, invert_from: float | None) -> Opened:
+        """Return the same with a value v as ``invert_from - v``; as it is where that is None."""
+        if invert_from is None:
+            return self
+        return self._replace(frames=(inverted(some, invert_from) for some in self.frames))
 
 
 def opened(

@@ -13,6 +13,7 @@ from tactile_graph.errors import DataError
 from tactile_graph.quantities import unit_of
 from tactile_graph_pads.circuits.ghosts import ghosts_in, ghosts_told
 from tactile_graph_pads.defects import Defects
+from tactile_graph_pads.falling import TURN_ROUND, fall_of, rest_among
 from tactile_graph_pads.learned import GOOD, Elements, Learned, Reading, TurnOn
 from tactile_graph_pads.learning.force_curve import ForceCurve, force_curve
 from tactile_graph_pads.learning.gains import LEAST_ALIKE, Gains, gains
@@ -251,6 +252,7 @@ class _Pressed(NamedTuple):
 
 def _pressed(objects: Stack, bare: Array, shows_from: float, known: _KnownPad) -> _Pressed:
     rest, touched = known.rest, bare >= shows_from
+    _refuse_falling(touched, rest, objects)
     _refuse_untouched(touched, bare, shows_from, rest, objects)
     new = placements(touched)
     silent = silence(touched[new], bare[new] >= PRESSED * shows_from, rest.good)
@@ -304,6 +306,24 @@ def _level(
     return best_level([f for f, _ in told], [p for _, p in told], shows_from)
 
 
+def _refuse_falling(touched: Flags, rest: Resting, objects: Stack) -> None:
+    """Raise where readings fall under pressure; `_refuse_untouched` tells where none ever rises."""
+    if rest.from_empty and not touched.any():
+        return
+    noise = max(rest.usual_noise, rest.step / np.sqrt(12.0))
+    at_rest, read = (rest.offset, noise), rest.good
+    if not rest.from_empty:
+        at_rest, read = rest_among(objects.values, ~rest.missing, rest.step)[1:], ~rest.missing
+    if (fell := fall_of(objects.values, *at_rest, read)) is None:
+        return
+    raise DataError(
+        ", ".join(objects.names[:3]),
+        f"in {fell.frames} of {len(objects)} frames readings fall under pressure, by up to "
+        f"{fell.most:.4g} {unit_of(objects.image.quantity)}, and hardly rise in any; only readings "
+        f"that rise are learned from: {TURN_ROUND}",
+    )
+
+
 def _refuse_untouched(touched: Flags, bare: Array, shows_from: float, rest: Resting,
                       objects: Stack) -> None:  # fmt: skip
     if touched.any():
@@ -314,9 +334,26 @@ def _refuse_untouched(touched: Flags, bare: Array, shows_from: float, rest: Rest
     n_below = int((bare <= -shows_from).any(axis=(1, 2)).sum())
     if n_below:
         raise DataError(where, _below(-float(bare.min()), n_below, rest, objects))
+    if not rest.from_empty:
+        _refuse_pressed_mostly(rest, objects)
     raise DataError(
         where,
         "nothing lies on the pad in any frame: every reading is within the empty pad's noise",
+    )
+
+
+def _refuse_pressed_mostly(rest: Resting, objects: Stack) -> None:
+    """Raise where elements rest as the others do, but in less than half of the frames."""
+    own, with_others, _ = rest_among(objects.values, ~rest.missing, rest.step)
+    pressed = own != with_others
+    if not pressed.any():
+        return
+    row, column = (int(np.median(at)) for at in np.nonzero(pressed))
+    raise DataError(
+        ", ".join(objects.names[:3]),
+        f"{int(pressed.sum())} elements around row {row}, column {column} are pressed in more than "
+        "half of the frames, so that the empty pad cannot be told; record it and give it by "
+        "--empty",
     )
 
 
@@ -337,7 +374,7 @@ def _below(most: float, n_frames: int, rest: Resting, objects: Stack) -> str:
         )
     return told + (
         "were the two recordings swapped, or has the pad drifted? Only readings that rise under "
-        "pressure are learned from; those that fall are turned round by a preset's invert_from"
+        f"pressure are learned from; where they fall, {TURN_ROUND}"
     )
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tactile_graph.errors import TactileGraphError
     from tactile_graph.pipeline.graph import Node
     from tactile_graph.wires.frame import Frame
-    from tactile_graph_sources.inspection.look import Looked
+    from tactile_graph_sources.inspection.look import Looked, Sensor
 
 MOST_SHOWN = 6
 MOST_TRIED = 1024
@@ -122,7 +122,7 @@ def _show(
             say(json.dumps(told) if as_json else f"{name}: {looked}" if name else looked)
             continue
         if as_json:
-            works = _works(looked.sensors[0].frames)
+            works = _works(looked.sensors[0])
             commands = [*_commands(looked, works, chosen), _levelled(looked, works, chosen)]
             commands = [command for command in commands if command]
             say(json.dumps({**data_of(looked), "sensor": name, "commands": commands}))
@@ -139,7 +139,7 @@ def _tell(looked: Looked, settings: Sequence[str]) -> None:
     for sensor in looked.sensors:
         for line in shades_of(sensor):
             say(line)
-    works = _works(looked.sensors[0].frames)  # when all else is said: much may be compiled
+    works = _works(looked.sensors[0])  # when all else is said: much may be compiled
     say("  takes it:")
     for command in _commands(looked, works, settings):
         say(f"    {command}")
@@ -222,13 +222,15 @@ def _in_yaml(setting: str) -> str:
     return f"{name}: {typed if fits else json.dumps(given[name.strip()])}"
 
 
-def _works(frames: Sequence[Frame]) -> _Works:
+def _works(sensor: Sensor) -> _Works:
     """Return which of the installed pipelines take frames such as these.
 
     Those that are shown have answered the fullest of them.
     """
     from tactile_graph.compiled import answered_meanwhile
+    from tactile_graph_sources.inspection.words import fullest
 
+    frames, most = sensor.frames, fullest(sensor)
     names, about, levels = [], {}, {}
     reasons: dict[str, list[str]] = {}
     for name, text, trouble, level in _tried(frames[0]):
@@ -240,10 +242,9 @@ def _works(frames: Sequence[Frame]) -> _Works:
     # The plainest first: what says of itself that it is for any recording.
     names.sort(key=lambda n: ("any" not in about[n], n))
     if frames[0].image.values.size <= MOST_TRIED:
-        fullest = max(frames, key=lambda frame: float(frame.image.filled(0.0).sum()))
         with answered_meanwhile():
             for name in _first(names, MOST_SHOWN):
-                if trouble := _failure(name, fullest):
+                if trouble := _failure(name, most):
                     names.remove(name)
                     reasons.setdefault(trouble, []).append(name)
     return _Works(tuple(names), about, {r: ", ".join(n) for r, n in reasons.items()}, levels)

@@ -118,8 +118,9 @@ def look_into(path: Path, settings: Mapping[str, Any]) -> Looked:
     """
     report = Report()
     columns = ColumnsTold(*(settings.get(name, "") for name in _COLUMNS))
-    told = Told.of(columns, **{k: v for k, v in settings.items() if k not in _COLUMNS})
-    recording = opened(path, told, report)
+    others = {k: v for k, v in settings.items() if k not in _COLUMNS}
+    invert_from = others.pop("invert_from", None)
+    recording = opened(path, Told.of(columns, **others), report).turned_round(invert_from)
     kept: dict[tuple[str, tuple[int, int]], list[Frame]] = {}
     counted: Counter[tuple[str, tuple[int, int]]] = Counter()
     n = 0

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.wires import Frame
 from tactile_graph_pads.circuits.ghosts import ghosts_in
+from tactile_graph_pads.falling import Fall, fall_of, resting_with_the_pad
 from tactile_graph_sources.inspection.sign import sign_is_lost
 from tactile_graph_sources.readers.sequence.leaps import is_leap
 
@@ -72,7 +73,8 @@ class Measured:
         Standard deviation of a cell at rest from frame to frame, that of the quieter quarter of
         the cells: the others may be pressed all the time. None with fewer than five frames.
     offset, offset_spread : float
-        Level of a cell at rest (its lowest tenth), the median of the cells and the distance of
+        Level of a cell at rest (its lowest tenth, or near what most cells read in most frames,
+        where it often is), the median of the cells and the distance of
         the tenth from the ninetieth percentile.
     dead, stuck, noisy, missing : tuple of (int, int)
         Row and column, from 0, of cells that never change while those around them are pressed, or
@@ -81,13 +83,18 @@ class Measured:
     n_contacts : tuple of int
         Patches of two cells or more above ``contact_level``, for each frame.
     contact_level : float
-        Above the offset: five times the noise, or a twentieth of the highest reading.
+        Above the offset, or below it where readings fall: five times the noise, or a twentieth of
+        the farthest reading.
     n_lasting : int
         Those that are there in every frame, as what lies on the pad from first to last.
     n_ghosts, n_telling : int
         Frames that look as on a matrix without isolation, and those that could tell.
     n_gaps, n_truths : int
         Frames that follow a gap, and that carry truth.
+    falls : Fall, optional
+        How readings fall under pressure, where they do instead of rising.
+    fullest : int
+        Which frame has the most beyond its noise.
     """
 
     n_frames: int
@@ -115,6 +122,8 @@ class Measured:
     n_telling: int
     n_gaps: int
     n_truths: int
+    falls: Fall | None
+    fullest: int
 
 
 def stack_of_frames(frames: Sequence[Frame]) -> Stack:
@@ -153,8 +162,12 @@ def measure(frames: Sequence[Frame]) -> Measured:
         noise = (
             None if sigma is None or not alive.any() else float(np.quantile(sigma[alive], QUIET))
         )
+        if noise is not None:
+            idle = resting_with_the_pad(filled, idle, noise, alive)
         offset = float(np.median(idle[alive])) if alive.any() else 0.0
-        level = max(ABOVE_NOISE * (noise or 0.0), SHARE_OF_PEAK * (highest - offset))
+        falls = fall_of(filled, idle, _at_least(noise, step), alive) if noise is not None else None
+        peak = highest - offset if falls is None else falls.most
+        level = max(ABOVE_NOISE * (noise or 0.0), SHARE_OF_PEAK * peak)
         dead, stuck = _still(filled, idle, alive, _Levels(offset, highest, noise or 0.0))
         dead |= silent
         pace = _pace(frames)
@@ -162,6 +175,8 @@ def measure(frames: Sequence[Frame]) -> Measured:
         lasting, n_lasting = _lasting(
             np.where(stuck, offset, idle) - offset, level, highest - offset
         )
+        at_rest, way = np.where(lasting, offset, idle), 1.0 if falls is None else -1.0
+        seen = [_seen(way * (f - at_rest), level, ABOVE_NOISE * (noise or 0.0)) for f in filled]
         return Measured(
             len(frames),
             (filled.shape[1], filled.shape[2]),
@@ -178,12 +193,14 @@ def measure(frames: Sequence[Frame]) -> Measured:
             _cells(stuck),
             _cells(_noisy(sigma, noise, alive & ~dead & ~stuck)),
             _cells(~known),
-            tuple(_contacts(f - np.where(lasting, offset, idle), level) for f in filled),
+            tuple(its.contacts for its in seen),
             level,
             n_lasting,
             *_ghosts(filled, idle, level, alive & ~stuck),
             sum(f.gap for f in frames),
             sum(f.truth is not None for f in frames),
+            falls,
+            max(range(len(seen)), key=lambda k: seen[k][1:]),
         )
 
 
@@ -346,6 +363,23 @@ def _lasting(rest: Stack, level: float, highest: float) -> tuple[NDArray[np.bool
     peaks = np.atleast_1d(ndimage.maximum(rest, labels, numbers)) if n else np.zeros(0)
     kept = numbers[(sizes >= SMALLEST_CONTACT) & (peaks >= LASTING * highest)]
     return np.isin(labels, kept), len(kept)
+
+
+def _at_least(noise: float, step: float | None) -> float:
+    """Return the noise of a reading, which is no less than that of its rounding."""
+    return max(noise, (step or 0.0) / float(np.sqrt(12.0)))
+
+
+class _Seen(NamedTuple):
+    """Contacts in a frame, what of its load lies beyond the noise, and all of it."""
+
+    contacts: int
+    beyond: float
+    total: float
+
+
+def _seen(load: Stack, level: float, least: float) -> _Seen:
+    return _Seen(_contacts(load, level), float(load[load > least].sum()), float(load.sum()))
 
 
 def _contacts(above: Stack, level: float) -> int:

@@ -28,6 +28,9 @@ def data_of(looked: Looked) -> dict[str, Any]:
         image = sensor.frames[0].image
         measured = asdict(sensor.measured)
         measured["n_frames"] = sensor.n_frames
+        measured["fullest"] = fullest(sensor).index
+        if (falls := sensor.measured.falls) is not None:
+            measured["falls"] = falls._asdict()
         sensors.append(
             {
                 "label": sensor.label,
@@ -103,11 +106,16 @@ def _sensor(sensor: Sensor, looked: Looked) -> Iterator[str]:
         yield _line("truth", f"known for {measured.n_truths} frames")
     n, stays = measured.n_contacts, measured.n_lasting
     lasting = f", {stays} of them in every frame" if stays and measured.n_frames > 1 else ""
+    rise, above = ("rise", "above") if measured.falls is None else ("fall", "below")
     yield _line(
         "contacts",
         f"{median(n):g} a frame as a rule, {min(n)} to {max(n)}{lasting} (patches of two cells or"
-        f" more that rise {_number(measured.contact_level)} {unit} above rest)",
+        f" more that {rise} {_number(measured.contact_level)} {unit} {above} rest)",
     )
+    if (falls := measured.falls) is not None:
+        yield _line("falling", f"by up to {_number(falls.most)} {unit} in {falls.frames} frames,"
+                    " and readings hardly rise in any; steps take those that")  # fmt: skip
+        yield _line("", f"rise: --with invert_from={_number(measured.offset)} turns them round")
     if told := ghosts_told(measured.n_ghosts, measured.n_telling):
         yield _line("ghosts", told)
 
@@ -183,8 +191,8 @@ def _number(value: float) -> str:
 
 
 def fullest(sensor: Sensor) -> Frame:
-    """Return the frame with the greatest load."""
-    return max(sensor.frames, key=lambda f: f.image.total)
+    """Return the frame in which most lies beyond the noise."""
+    return sensor.frames[sensor.measured.fullest]
 
 
 def shades_of(sensor: Sensor) -> Iterator[str]:
@@ -192,7 +200,11 @@ def shades_of(sensor: Sensor) -> Iterator[str]:
     frame = fullest(sensor)
     values = np.asarray(frame.image.filled(np.nan), dtype=np.float64)
     merged = max(1, -(-values.shape[0] // HIGHEST), -(-2 * values.shape[1] // WIDEST))
-    low, high = sensor.measured.offset, sensor.measured.highest
+    measured = sensor.measured
+    low, high = measured.offset, measured.highest
+    most = np.max
+    if measured.falls is not None:
+        high, most = measured.lowest, np.min
     merge = f", {merged} x {merged} cells a character pair" if merged > 1 else ""
     yield (
         f"  frame {frame.index}, the fullest: {SHADES[1:]!r} from {_number(low)} to "
@@ -204,11 +216,11 @@ def shades_of(sensor: Sensor) -> Iterator[str]:
         for left in range(0, values.shape[1], merged):
             block = values[top : top + merged, left : left + merged]
             block = block[np.isfinite(block)]
-            line += 2 * ("x" if not block.size else _shade(float(block.max()), low, high))
+            line += 2 * ("x" if not block.size else _shade(float(most(block)), low, high))
         yield f"  |{line}|"
     yield "  +" + "-" * (2 * -(-values.shape[1] // merged)) + "+"
 
 
 def _shade(value: float, low: float, high: float) -> str:
-    share = (value - low) / (high - low) if high > low else 0.0
+    share = (value - low) / (high - low) if high != low else 0.0
     return SHADES[min(len(SHADES) - 1, max(0, int(share * len(SHADES))))]

@@ -154,3 +154,30 @@ def test_a_hot_row_or_column_is_no_load_and_hides_none(offset):
         if np.any(load):
             above = risen(image_of(hot), PAD).above
             np.testing.assert_allclose(above, np.where(on, values, 0.0), atol=1e-3)
+
+
+def seems_touched(shape, press, n, rounded):
+    """Return the share of frames of noise that seem touched, one cell of them pressed or none."""
+    rng, step, hits = np.random.default_rng(10), AboveNoise(), 0
+    for _ in range(n):
+        values = rng.normal(0.0, 20.0, shape)
+        values.flat[rng.integers(values.size)] += press
+        found = step(image_of(np.rint(values) if rounded else values))
+        hits += found.together > 3 or found.rise > 1.5
+    return hits / n
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", [(1, 5), (1, 8), (3, 3), (3, 4), (4, 4), (5, 5), (1, 32)])
+@pytest.mark.parametrize("rounded", [False, True])
+def test_few_cells_are_not_touched_by_their_noise_and_are_by_a_load(shape, rounded):
+    assert seems_touched(shape, 0.0, 500, rounded) < 0.05
+    assert seems_touched(shape, 2000.0, 100, rounded) == 1.0
+
+
+@pytest.mark.parametrize("valid", [None, [[True, True], [False, True]]])
+def test_four_cells_or_fewer_tell_no_noise(valid):
+    image = image_of(np.array([[0.1, 0.0], [0.0, 2.0]]), None if valid is None else np.array(valid))
+    match = rf"^{4 if valid is None else 3} valid cells tell no noise, .* at least 5 do, or a pad"
+    with pytest.raises(Degenerate, match=match):
+        AboveNoise()(image)

@@ -63,6 +63,44 @@ def test_readings_below_the_empty_pads_are_not_called_nothing(tmp_path: Path) ->
     refused(full, fallen, at_full, tmp_path)
 
 
+def refused_alone(values: np.ndarray, match: str, folder: Path) -> None:
+    objects = stack(folder / "o.npz", [Frame.of(v.copy(), quantity="counts") for v in values])
+    with pytest.raises(DataError, match=match):
+        learn_pad(None, objects)
+
+
+FALL = r"^o.npz: in {} of {} frames readings fall under pressure, by up to {} counts, .*invert_from"
+
+
+def test_readings_that_fall_under_pressure_are_refused_without_an_empty_recording_too(
+    tmp_path: Path,
+) -> None:
+    rng = np.random.default_rng(0)
+    values = rng.normal(220.0, 1.0, (30, 5, 12))
+    values[5:, 1, :8] -= [12, 22, 9, 48, 44, 7, 21, 42]
+    refused_alone(values, FALL.format(25, 30, r"5\d(\.\d+)?"), tmp_path)
+    values = rng.normal(220.0, 1.0, (60, 10, 10))
+    for k in range(60):
+        row, column = rng.integers(1, 8, 2)
+        values[k, row : row + 2, column : column + 2] -= 60.0 * (k % 3 > 0)
+    refused_alone(values, FALL.format(40, 60, r"6\d(\.\d+)?"), tmp_path)
+
+
+def test_readings_that_fall_farther_than_those_beside_them_rise_are_refused(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    empty, objects = rng.normal(3000.0, 2.0, (2, 40, 8, 8))
+    objects[:30, 2:7, 2:7] += 100.0
+    objects[:30, 3:6, 3:6] -= 1500.0
+    refused(empty, objects, FALL.format(30, 40, r"14\d\d"), tmp_path)
+
+
+def test_elements_pressed_in_most_frames_are_not_called_nothing(tmp_path: Path) -> None:
+    values = np.random.default_rng(0).normal(0.0, 1.0, (30, 5, 12))
+    values[5:, 1, :8] += [12, 22, 9, 48, 44, 7, 21, 42]
+    match = r"^o.npz: 7 elements around row 1, column 3 are pressed in more than half of the frames"
+    refused_alone(values, match, tmp_path)
+
+
 def test_a_recording_without_a_valid_reading_is_told(tmp_path: Path) -> None:
     empty = np.random.default_rng(0).normal(3000.0, 2.0, (40, 8, 8))
     none = np.full((50, 8, 8), np.nan)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shlex
 import subprocess
 from pathlib import Path
@@ -119,6 +120,26 @@ def test_people_read_the_same_and_see_the_fullest_frame(mat: Path) -> None:
     assert len(frame) == 10
     assert frame[0].endswith("xx|")
     assert len({c for line in frame for c in line.strip(" |x")}) > 3
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("nothing_tried")
+def test_readings_that_fall_are_told_with_what_turns_them_round(tmp_path: Path) -> None:
+    values = np.random.default_rng(0).normal(220.0, 1.0, (20, 8, 10))
+    values[10:, 2:5, 3:7] -= 60.0
+    np.save(tmp_path / "fall.npy", values)
+    said = " ".join(run(tmp_path / "fall.npy").split())
+    assert "patches of two cells or more that fall" in said
+    told = re.search(
+        r"falling by up to (\S+) raw in 10 frames, .* (invert_from=2\d\d\S*) turns", said
+    )
+    assert told is not None
+    turned = run(tmp_path / "fall.npy", "--with", told[2])
+    assert "falling" not in turned
+    assert f" --with {told[2]}" in turned
+    (sensor,) = looked(tmp_path / "fall.npy")["sensors"]
+    assert sensor["falls"]["frames"] == 10
+    assert sensor["fullest"] >= 10
 
 
 def test_what_it_is_is_said_before_any_pipeline_is_tried(

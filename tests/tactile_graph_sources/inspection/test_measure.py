@@ -103,3 +103,30 @@ def test_signed_numbers_written_without_their_sign_are_noticed() -> None:
     clipped[5:, 5, 5] = 65535
     for values, lost in ((wrapped, True), (counts, False), (clipped, False), (wrapped / 7, False)):
         assert measure([Frame.of(v.astype(float)) for v in values]).sign_lost == lost
+
+
+def touched(by: float, around: float, first: int, n: int = 10) -> list[Frame]:
+    """Return frames of a disc from one frame on, and of what its ring reads."""
+    values = np.random.default_rng(0).normal(0.0, 2.0, (n, 20, 20))
+    far = np.hypot(*(np.mgrid[:20, :20] - np.array([8, 12])[:, None, None]))
+    values[first:] += np.where(far < 2.5, by, np.where(far < 8.0, around, 0.0))
+    return [Frame.of(np.rint(v), index=k) for k, v in enumerate(values)]
+
+
+@pytest.mark.parametrize("first", [3, 4, 8])
+def test_what_reads_less_beside_a_touch_is_no_rest_and_empties_no_frame(first: int) -> None:
+    found = measure(touched(300.0, -80.0, first))
+    assert found.n_contacts == (0,) * first + (1,) * (10 - first)
+    assert found.fullest >= first
+    assert found.offset_spread < 10.0
+    assert found.falls is None
+
+
+@pytest.mark.parametrize("first", [3, 8])
+def test_readings_that_fall_are_contacts_too_and_told(first: int) -> None:
+    found = measure(touched(-300.0, 80.0, first))
+    assert found.n_contacts == (0,) * first + (1,) * (10 - first)
+    assert found.fullest >= first
+    assert found.falls is not None
+    assert found.falls.frames == 10 - first
+    assert found.falls.most == pytest.approx(304.0, abs=6.0)

@@ -296,3 +296,21 @@ def test_neither_an_untold_scale_nor_a_small_pattern_flags_what_learned_gains_ev
         found = step(Image(bench.zero_v + gain * loads, (1.3, 1.3), (-0.15, -0.15), "raw"))
         assert math.hypot(found.x_cm + 0.15 - 1.3 * x, found.y_cm + 0.15 - 1.3 * y) < 0.2
         assert found.fits, (found.posterior.centre_std_cm, found.posterior.usual_std_cm)
+
+
+def test_a_pad_of_four_elements_shows_above_the_noise_that_it_has_learned(tmp_path):
+    elements = Elements(
+        np.zeros((2, 2)), np.full((2, 2), 1e-3), np.ones((2, 2)), np.full((2, 2), "good")
+    )
+    write_elements(tmp_path / "elements.csv", elements)
+    learned = {
+        "reading": "volt", "rows": 2, "columns": 2, "pitch_cm": [1.3, 1.3],
+        "origin_cm": [0.0, 0.0], "elements": "elements.csv", "noise": 1e-3, "touched_from": 4e-3,
+    }  # fmt: skip
+    (tmp_path / "pad.yaml").write_text(yaml.safe_dump({"learned": learned}))
+    step, rng = AboveNoise(pad=str(tmp_path / "pad.yaml")), np.random.default_rng(0)
+    for _ in range(20):
+        values = rng.normal(0.0, 5e-4, (2, 2))
+        assert step(Image(values.copy(), (1.3, 1.3), quantity="volt")).rise == 0.0
+        values[1, 0] += 0.1
+        assert step(Image(values, (1.3, 1.3), quantity="volt")).rise > 1.5
