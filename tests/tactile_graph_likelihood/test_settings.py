@@ -77,3 +77,12 @@ def test_a_rectangle_is_located_as_precisely_as_asked():
         for precision in (0.1, 0.05):
             found = LocateRectangle(LocateSettings(precision=precision))(given)
             assert found.posterior.equal_points > 0.99 * precision**-2
+
+
+@pytest.mark.parametrize(
+    ("step", "setting"), [("locate_objects", "more"), ("fit_footprints", "more")]
+)
+def test_what_moves_or_scales_an_answer_has_an_end(step, setting):
+    node = f"{{step: {step}, in: frame, with: {{{setting}: .inf}}}}"
+    with pytest.raises(PipelineError, match=f"{setting}: must be a finite number, got inf"):
+        loads(f"pipeline: endless\nnodes: {{one: {node}}}\noutputs: [one]\n")

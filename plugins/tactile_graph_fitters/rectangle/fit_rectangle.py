@@ -8,6 +8,7 @@ from typing import Annotated, TypeAlias
 import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
+from pydantic import AllowInfNan
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.errors import Degenerate
@@ -37,7 +38,7 @@ def fit_rectangle(
     elements: Image | None = None,
     *,
     scale_cm: Annotated[float | None, Gt(0)] = None,
-    inside_cm: Annotated[float, Ge(0)] = 0.0,
+    inside_cm: Annotated[float, Ge(0), AllowInfNan(False)] = 0.0,
     cell_cm: Annotated[float | None, Gt(0)] = None,
 ) -> FittedRectangle:
     """Return the rectangle with the least robust distance of its outline from the points.
