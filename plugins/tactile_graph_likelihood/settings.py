@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Ge, Gt, Le, Lt
 
@@ -21,6 +21,8 @@ Share = Annotated[float, Gt(0), Lt(1)]
 Part = Literal["sigma", "voids", "foam", "fall", "lean"]
 ON_PAD = {"whole": 1.0, "mostly": 0.99, "partly": 0.0}
 """Probability, before a frame is read, that the whole outline lies on the pad."""
+LARGEST_SAMPLE = 32768
+"""Points at the finest precision, which take about a second."""
 Load = Annotated[
     Image, Quantity("gram", "kilopascal", "raw", "counts", "level"), Grid(square_to=0.0)
 ]
@@ -58,9 +60,11 @@ class FootprintSettings:
     smallest_cm, largest_cm : float, optional
         Range of radii and half sides; 0.4 pitches and the pad's diagonal if not given.
     precision : float
-        Error of the mean, over the posterior's own standard deviation, at which sampling ends.
-    most_points : int
-        Where it ends at the latest.
+        Error of the mean, over the posterior's own standard deviation, at which sampling ends,
+        unless it comes to the most points before, as where few of them are worth much.
+    most_points : int, optional
+        Where it ends at the latest; if not given 1024, times the square of how much finer
+        ``precision`` is than 0.15, up to 32768.
     seed : int
         Shifts the points at which the posterior is looked at.
 
@@ -83,8 +87,9 @@ class FootprintSettings:
     smallest_cm: Positive | None = None
     largest_cm: Positive | None = None
     precision: Annotated[float, Gt(0), Le(1)] = 0.15
-    most_points: Annotated[int, Ge(32)] = 1024
+    most_points: Annotated[int, Ge(32)] | None = None
     seed: Annotated[int, Ge(0)] = 0
+    usual_points: ClassVar[int] = 1024
 
     def __post_init__(self) -> None:
         smallest, largest = self.smallest_cm, self.largest_cm
@@ -102,6 +107,14 @@ class FootprintSettings:
     def gap(self) -> float:
         """Distance of neighbouring elements' edges in cm: the given one, or the pad's."""
         return self.known_pad.geometry.gap_cm if self.gap_cm is None else self.gap_cm
+
+    @property
+    def points(self) -> int:
+        """Points at which sampling ends at the latest: as told, or enough for the precision."""
+        if self.most_points is not None:
+            return self.most_points
+        finer = max(type(self).precision / self.precision, 1.0)
+        return math.ceil(min(self.usual_points * finer * finer, LARGEST_SAMPLE))
 
     @property
     def noise(self) -> Noise:
@@ -123,7 +136,7 @@ class FootprintSettings:
             smallest_cm=self.smallest_cm or 0.0,
             largest_cm=self.largest_cm or math.inf,
             precision=self.precision,
-            most_points=self.most_points,
+            most_points=self.points,
             seed=self.seed,
         )
 
@@ -137,7 +150,9 @@ class FootprintSettings:
 class LocateSettings(FootprintSettings):
     """The same of a pad that need not be the one that is told, and how soon an answer is wanted.
 
-    Points enough for a mean whose own error does not matter beside the posterior's deviation.
+    Points enough for a mean whose own error does not matter beside the posterior's deviation, which
+    they leave uncertain itself: 768 at most, and more, by the square, if a precision finer than 0.3
+    is asked for.
 
     Parameters
     ----------
@@ -153,9 +168,9 @@ class LocateSettings(FootprintSettings):
 
     on_pad: Literal["whole", "mostly", "partly"] = "mostly"
     precision: Annotated[float, Gt(0), Le(1)] = 0.3
-    most_points: Annotated[int, Ge(32)] = 768
     quick: bool = False
     sampled_above_cm: Annotated[float, Ge(0)] | None = None
+    usual_points: ClassVar[int] = 768
 
 
 DEFAULTS = FootprintSettings()

@@ -45,6 +45,7 @@ _WORDS = {
 _MEANT = {"int": int, "float": float, "string": str, "bool": bool, "path": Path}
 """What an error is about, by the first word of its name, where no annotation tells."""
 _UNKNOWN = ("unexpected_keyword_argument", "extra_forbidden")
+_ENDLESS = "finite_number"
 _TELLING = (*_UNKNOWN, "literal_error", "value_error")
 _QUOTED = re.compile(r"\s*[-+]?(\d+|\d*\.\d+|\d+\.\d*)\s*")
 """Numbers that are a text only where somebody quoted them: YAML reads 5e-1 as one by itself."""
@@ -290,7 +291,7 @@ def _of_another_arm(at: Place, e: Any, seen: Mapping[Place, Any]) -> bool:
 
 def _rank(e: Any) -> int:
     kind = str(e["type"])
-    return 0 if kind in _COMPARISONS else 1 if kind in _TELLING else 2
+    return 0 if kind in _COMPARISONS or kind == _ENDLESS else 1 if kind in _TELLING else 2
 
 
 def _words(e: Any, setting: Setting, at: Place) -> str:
@@ -314,6 +315,8 @@ def _words(e: Any, setting: Setting, at: Place) -> str:
     if kind in _COMPARISONS:
         key, sign = _COMPARISONS[kind]
         return f"must be {sign} {context[key]}, got {shown(got)}"
+    if kind == _ENDLESS:
+        return f"must be a finite number, got {shown(got)}"
     if kind in ("literal_error", "enum"):
         told = f"got {shown(got)}{_choice_typo(got, annotation)}"
         return f"must be one of {_allowed(annotation)}, {told}"

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from helpers_filters import image_of
-from tactile_graph.errors import DataError
+from tactile_graph import loads
+from tactile_graph.errors import DataError, PipelineError
 from tactile_graph_filters.nan import all_finite, refuse_nan
 from tactile_graph_filters.readings.decouple import Decouple
 from tactile_graph_filters.readings.find_bad import FindBad
@@ -57,3 +58,13 @@ def test_what_is_not_finite_is_refused_by_all_that_sum_or_remember(name, bad):
     made, quantity = FINITE[name]
     with pytest.raises(DataError, match=f"row 1, column 0: must be a number, got {bad}"):
         made()(image_of([[0.01, 0.02], [bad, 0.015]], quantity))
+
+
+@pytest.mark.parametrize(
+    ("step", "setting"),
+    [("threshold_variable", "floor"), ("threshold_learned", "times"), ("lean_contacts", "lean")],
+)
+def test_what_moves_or_scales_an_answer_has_an_end(step, setting):
+    node = f"{{step: {step}, in: frame, with: {{{setting}: .inf}}}}"
+    with pytest.raises(PipelineError, match=f"{setting}: must be a finite number, got inf"):
+        loads(f"pipeline: endless\nnodes: {{one: {node}}}\noutputs: [one]\n")

@@ -10,6 +10,8 @@ import pytest
 
 from helpers_ellipses import drawn
 from helpers_modes import plainly
+from tactile_graph import loads
+from tactile_graph.errors import PipelineError
 from tactile_graph_fitters.circle import principal_axes as circles
 from tactile_graph_fitters.circle.algebraic import HYPER, algebraic_fit
 from tactile_graph_fitters.circle.even_load import TOO_FEW, Readings, even_disc
@@ -136,3 +138,18 @@ def test_cells_in_one_line_give_no_rectangle_but_their_middle(n):
                     np.arange(n + 4.0), np.arange(5.0))  # fmt: skip
     found = plainly(likeliest)(window, LAW, 1.3)
     assert found == (ONE_LINE, pytest.approx(1.3 * (n - 1) / 2 + 2.0), 4.0, 0, 0, 0, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("step", "setting"),
+    [
+        ("fit_rectangle", "inside_cm"),
+        ("rectangle_from_ellipse", "inside_cm"),
+        ("rectangle_from_ellipse", "inside_cells"),
+        ("rectangle_from_ellipse", "cell_cm"),
+    ],
+)
+def test_what_moves_or_scales_an_answer_has_an_end(step, setting):
+    node = f"{{step: {step}, in: frame, with: {{{setting}: .inf}}}}"
+    with pytest.raises(PipelineError, match=f"{setting}: must be a finite number, got inf"):
+        loads(f"pipeline: endless\nnodes: {{one: {node}}}\noutputs: [one]\n")

@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
+from pydantic import AllowInfNan
 
 from tactile_graph.errors import RuleError
 from tactile_graph.wires import Image
@@ -21,7 +22,7 @@ def lean_contacts(
     image: Image,
     contacts: Sequence[Contact],
     *,
-    lean: Annotated[float, Ge(0)] = 0.35,
+    lean: Annotated[float, Ge(0), AllowInfNan(False)] = 0.35,
     reach_cells: Annotated[float, Gt(0)] = 3.2,
 ) -> Contacts:
     """Return each contact with its centres moved against the skewness of the readings around it.

@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Annotated
 
 import numpy as np
-from annotated_types import Ge, Gt, Lt
+from annotated_types import Ge, Gt, Le, Lt
 from numpy.typing import NDArray
 
 from tactile_graph_filters.contacts.contacts import Contact, Contacts, contacts_of
@@ -18,7 +18,7 @@ def sharpen_contacts(
     contacts: Sequence[Contact],
     *,
     share: Annotated[float, Gt(0), Lt(1)] = 0.69,
-    finer: Annotated[int, Ge(1)] = 8,
+    finer: Annotated[int, Ge(1), Le(64)] = 8,
 ) -> Contacts:
     """Return each contact with area and centre of what reaches a share of its own peak.
 

@@ -89,9 +89,10 @@ def _bridged(on: NDArray[np.bool_], cells: int) -> NDArray[np.bool_]:
 
     if cells == 0:
         return on
-    square = np.ones((2 * cells + 1, 2 * cells + 1), np.bool_)
-    padded = np.pad(on, cells)  # closing must see the outside as off, not as unknown
-    closed = ndimage.binary_closing(padded, square)[cells:-cells, cells:-cells]
+    cells = min(cells, max(on.shape))  # a square as large as the mask closes as any larger one
+    padded = np.pad(on, cells).view(np.uint8)  # closing must see the outside as off, not as unknown
+    side = 2 * cells + 1
+    closed = ndimage.grey_closing(padded, (side, side))[cells:-cells, cells:-cells]
     return np.asarray(ndimage.binary_fill_holes(closed), np.bool_)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 from annotated_types import Gt
+from pydantic import AllowInfNan
 
 from tactile_graph.errors import RuleError
 from tactile_graph.steps.rules import Grid
@@ -35,7 +36,9 @@ class ThresholdLearned:
 
     stateless = True
 
-    def __init__(self, *, pad: str | dict[str, Any], times: Annotated[float, Gt(0)] = 1.0) -> None:
+    def __init__(
+        self, *, pad: str | dict[str, Any], times: Annotated[float, Gt(0), AllowInfNan(False)] = 1.0
+    ) -> None:
         from tactile_graph_pads.pad import learned_of
 
         learned = learned_of(pad)

@@ -7,6 +7,7 @@ from typing import Annotated
 import numpy as np
 from annotated_types import Ge, Gt, Lt
 from numpy.typing import NDArray
+from pydantic import AllowInfNan
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image
@@ -22,7 +23,7 @@ def threshold_variable(
     image: Image,
     *,
     fraction: Annotated[float, Gt(0), Lt(1)] = 0.1,
-    floor: Annotated[float, Ge(0)] = 0.0,
+    floor: Annotated[float, Ge(0), AllowInfNan(False)] = 0.0,
 ) -> Thresholded:
     """Return the footprint above a fraction of the mean reading within that very footprint.
 

@@ -8,6 +8,7 @@ from typing import Annotated, TypeAlias
 import numpy as np
 from annotated_types import Ge, Gt
 from numpy.typing import NDArray
+from pydantic import AllowInfNan
 
 from tactile_graph.compiled import compiled_later, compiled_twin_of
 from tactile_graph.errors import Degenerate
@@ -37,7 +38,7 @@ def fit_rectangle(
     elements: Image | None = None,
     *,
     scale_cm: Annotated[float | None, Gt(0)] = None,
-    inside_cm: Annotated[float, Ge(0)] = 0.0,
+    inside_cm: Annotated[float, Ge(0), AllowInfNan(False)] = 0.0,
     cell_cm: Annotated[float | None, Gt(0)] = None,
 ) -> FittedRectangle:
     """Return the rectangle with the least robust distance of its outline from the points.
@@ -45,7 +46,8 @@ def fit_rectangle(
     Parameters
     ----------
     points : Points
-        On the outline, on at least three of its sides.
+        On the outline, on at least three of its sides: of fewer, as of two rows or an L, it is the
+        smallest of the rectangles that are equally near.
     elements : Image, optional
         What was read, as it was read: not subdivided.
     scale_cm : float, optional
@@ -76,7 +78,8 @@ def fit_rectangle(
     Minimises the sum of 2 s**2 (sqrt(1 + (d / s)**2) - 1) (soft l1) over position, angle and half
     sides, d being the distance of a point from the nearest point of the outline. Angles over a
     quarter turn are tried with the points' (trimmed) bounding boxes first; Levenberg and
-    Marquardt's iteration with iterated weights goes on from the best two. Points around a corner
+    Marquardt's iteration with iterated weights goes on from the best two. A side that no point
+    holds, further out as near to all, ends with the outermost point. Points around a corner
     that a footprint lacks pull both its sides inwards. Source: thesis 4.3.1 and 6.1.3 (rectangle
     instead of ellipse, left to future work); Huber and Ronchetti 2009, Robust Statistics, chapter
     7.
@@ -227,6 +230,27 @@ def _minimise(uv: Values, p: Values, scale: float, least: float) -> tuple[float,
 
 
 @compiled_later
+def _draw_in(uv: Values, p: Values) -> None:
+    """Bring a side that lies beyond all points in to the outermost one.
+
+    No point holds it: the search left it anywhere. To no point is it further then.
+    """
+    cos, sin = math.cos(p[4]), math.sin(p[4])
+    a_least, a_most, b_least, b_most = p[2], -p[2], p[3], -p[3]
+    for i in range(uv.shape[1]):
+        du, dv = uv[0, i] - p[0], uv[1, i] - p[1]
+        a, b = du * cos + dv * sin, dv * cos - du * sin
+        a_least, a_most = min(a_least, a), max(a_most, a)
+        b_least, b_most = min(b_least, b), max(b_most, b)
+    a_least, a_most = max(a_least, -p[2]), min(a_most, p[2])
+    b_least, b_most = max(b_least, -p[3]), min(b_most, p[3])
+    mid_a, mid_b = 0.5 * (a_least + a_most), 0.5 * (b_least + b_most)
+    p[0] += mid_a * cos - mid_b * sin
+    p[1] += mid_a * sin + mid_b * cos
+    p[2], p[3] = 0.5 * (a_most - a_least), 0.5 * (b_most - b_least)
+
+
+@compiled_later
 def outline_fit(xy: Values, scale_cm: float, starts: int, least_step: float) -> Found:
     """Return status, centre (x, y), half sides and angle in cm and as seen, misfit and rounds.
 
@@ -254,6 +278,7 @@ def outline_fit(xy: Values, scale_cm: float, starts: int, least_step: float) -> 
         if found < least:
             least, settled = found, made > 0
             best[:] = p
+    _draw_in(uv, best)
     u, v = best[0], best[1]
     # v runs as y does, down, in the frame: as seen its angles run the other way.
     angle = -(best[4] + math.atan2(sin, cos))

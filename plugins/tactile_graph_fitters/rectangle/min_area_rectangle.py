@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -17,6 +18,11 @@ from tactile_graph_fitters.orientation.oriented import Oriented
 from tactile_graph_fitters.rectangle.fitted_rectangle import FittedRectangle, rectangle_of
 
 Values = NDArray[np.float64]
+
+TIE = 1e-12
+"""Part of an area by which rounding alone makes another one of it."""
+ANGLE = 1e-6
+"""In radians, up to quarter turns: sides of one rectangle lie no further apart."""
 
 
 def min_area_rectangle(
@@ -41,7 +47,7 @@ def min_area_rectangle(
     -------
     FittedRectangle
         ``misfit`` is the share of its area outside the points' hull, 0 to 1; ``iterations`` counts
-        the hull's sides tried.
+        the hull's sides tried; it is ``ambiguous``, too, where one at another angle is as small.
 
     Raises
     ------
@@ -64,7 +70,7 @@ def min_area_rectangle(
     # By a power of two: areas of very large and very small ones are no numbers.
     _, exponent = math.frexp(float(np.abs(corners).max()))
     found = smallest(np.ldexp(corners, -exponent))
-    first, second, angle, filled = found[2:]
+    first, second, angle, filled, tied = found[2:]
     if not first * second > 0.0:
         raise Degenerate(f"{n} points nearly on one line: the rectangle's area is too small")
     empty = max(0.0, 1.0 - filled / (first * second))
@@ -73,7 +79,8 @@ def min_area_rectangle(
     except OverflowError:
         raise Degenerate(f"{n} points: their rectangle is too large for a number") from None
     pitch_cm = element_pitch_cm(elements, cell_cm)
-    return rectangle_of(Oriented(x, y, first, second, angle), empty, n, len(corners), pitch_cm)
+    its = rectangle_of(Oriented(x, y, first, second, angle), empty, n, len(corners), pitch_cm)
+    return replace(its, ambiguous=True) if tied else its
 
 
 min_area_rectangle.usual_cm = {"cell_cm": THESIS_PITCH_CM}  # type: ignore[attr-defined]
@@ -93,8 +100,10 @@ def _furthest(corners: Values, start: int, dx: float, dy: float) -> int:
 
 
 @compiled_later
-def smallest(corners: Values) -> tuple[float, float, float, float, float, float]:
+def smallest(corners: Values) -> tuple[float, float, float, float, float, float, bool]:
     """Return centre (x, y), two sides, the first one's angle as seen, and the hull's own area.
+
+    Last comes whether there is another one as small, but for rounding, at another angle.
 
     ``corners`` run counter-clockwise as seen, that is from +x to -y: outwards of a side (dx, dy)
     is (-dy, dx), where y runs down.
@@ -102,7 +111,8 @@ def smallest(corners: Values) -> tuple[float, float, float, float, float, float]
     n = corners.shape[0]
     ahead = away = behind = 0
     best = np.inf
-    x = y = first = second = angle = area = 0.0
+    x = y = first = second = angle = area = best_dx = best_dy = 0.0
+    tied = False
     for i in range(n):
         k = (i + 1) % n
         dx, dy = corners[k, 0] - corners[i, 0], corners[k, 1] - corners[i, 1]
@@ -115,10 +125,16 @@ def smallest(corners: Values) -> tuple[float, float, float, float, float, float]
         high = (corners[ahead, 0] - corners[i, 0]) * dx + (corners[ahead, 1] - corners[i, 1]) * dy
         low = (corners[behind, 0] - corners[i, 0]) * dx + (corners[behind, 1] - corners[i, 1]) * dy
         deep = (corners[away, 0] - corners[i, 0]) * dy - (corners[away, 1] - corners[i, 1]) * dx
-        if (high - low) * deep < best:
-            best = (high - low) * deep
+        here = (high - low) * deep
+        if here < best * (1.0 - TIE):
+            tied = False
+        elif here <= best * (1.0 + TIE):
+            along, across = dx * best_dx + dy * best_dy, dx * best_dy - dy * best_dx
+            tied = tied or abs(along * across) > ANGLE
+        if here < best:
+            best, best_dx, best_dy = here, dx, dy
             first, second, angle = high - low, deep, math.atan2(-dy, dx)
             along = 0.5 * (low + high)
             x = corners[i, 0] + along * dx + 0.5 * deep * dy
             y = corners[i, 1] + along * dy - 0.5 * deep * dx
-    return x, y, first, second, angle, 0.5 * area
+    return x, y, first, second, angle, 0.5 * area, tied

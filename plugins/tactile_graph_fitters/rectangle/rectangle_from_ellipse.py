@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 from annotated_types import Gt
+from pydantic import AllowInfNan
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Ellipse, Image, Rectangle
@@ -72,9 +73,9 @@ def rectangle_from_ellipse(
     ellipse: Ellipse,
     elements: Image | None = None,
     *,
-    inside_cm: float | None = None,
-    inside_cells: float = 0.0,
-    cell_cm: Annotated[float | None, Gt(0)] = None,
+    inside_cm: Annotated[float, AllowInfNan(False)] | None = None,
+    inside_cells: Annotated[float, AllowInfNan(False)] = 0.0,
+    cell_cm: Annotated[float | None, Gt(0), AllowInfNan(False)] = None,
 ) -> EllipseRectangle:
     """Return the rectangle an ellipse fitted to a rectangular outline stands for.
 

@@ -146,12 +146,13 @@ class FootprintByOrder:
 
     def _touched_of(self, image: Image, touched: Mask | None) -> Readings:
         gap = self._gap_cm(image)
+        values = np.ascontiguousarray(image.filled(0.0), dtype=np.float64)
         if touched is None:
-            return readings_of(image, gap, self._touched_from, 0.0)
+            # Not their logarithms: those of neighbouring numbers may be one.
+            return readings_of(image, gap, self._touched_from, 0.0)._replace(logs=values)
         require_same_shape(image=image, touched=touched)
-        values = image.filled(0.0)
-        lift = min(float(values.min()), 0.0)  # a raw reading may lie below zero
-        found = readings_of(image.with_values(values - lift + 1.0), gap, 0.0, 0.0)
+        level = image.with_values(np.where(np.isfinite(values), 1.0, values))
+        found = readings_of(level, gap, 0.0, 0.0)._replace(logs=values)
         on = touched.values & (found.states == ON)
         states = np.where(on, ON, np.where(found.states == ON, OFF, found.states)).astype(np.uint8)
         return _touching(found, states)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
 from annotated_types import Ge, Le, MinLen
+from pydantic import AllowInfNan
 
 from tactile_graph.steps import Spread
 from tactile_graph.wires import Circle, Ellipse, Polygon, Rectangle
@@ -100,7 +101,7 @@ class FitFootprints:
         *,
         kinds: Annotated[list[Kind], MinLen(1)] = ["disc", "rectangle", "ellipse", "triangle"],  # noqa: B006 - settings are never changed
         most: Annotated[int, Ge(1), Le(12)] = 6,
-        more: float = 2.5,
+        more: Annotated[float, AllowInfNan(False)] = 2.5,
         settings: Annotated[
             SeveralSettings,
             Spread(

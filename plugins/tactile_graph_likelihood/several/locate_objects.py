@@ -8,6 +8,7 @@ from typing import Annotated
 
 import numpy as np
 from annotated_types import Ge, Le, MinLen
+from pydantic import AllowInfNan
 
 from tactile_graph.steps import Spread
 from tactile_graph_likelihood.any_pad.observation.observed import (
@@ -115,7 +116,7 @@ class LocateObjects:
         *,
         kinds: Annotated[list[Kind], MinLen(1)] = ["disc", "ellipse", "rectangle"],  # noqa: B006 - settings are never changed
         most: Annotated[int, Ge(1), Le(12)] = 6,
-        more: float = 1.0,
+        more: Annotated[float, AllowInfNan(False)] = 1.0,
         settings: Annotated[
             SeveralSettings, Spread("pad", "gap_cm", "on_pad", "smallest_cm", "largest_cm")
         ] = SEVERAL,

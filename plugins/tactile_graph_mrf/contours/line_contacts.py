@@ -160,7 +160,7 @@ def bridged(owner: Labels, longest: int) -> Labels:
     """Return the owners, with short gaps between two cells of one owner given to it."""
     out = owner.copy()
     for given, taken in ((owner, out), (owner.T, out.T)):
-        for gap in range(1, longest + 1):
+        for gap in range(1, min(longest, given.shape[1] - 2) + 1):
             first, last = given[:, : -gap - 1], given[:, gap + 1 :]
             inner = [given[:, k : k - gap - 1] for k in range(1, gap + 1)]
             here = (first > 0) & (first == last) & ~np.any(inner, axis=0)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from annotated_types import Ge, Gt, Le
 from numpy.typing import NDArray
-from pydantic import BaseModel, field_validator
+from pydantic import AllowInfNan, BaseModel, field_validator
 from typing_extensions import TypedDict
 
 from tactile_graph.errors import shown
@@ -250,6 +250,16 @@ def floats(
 def test_nan_is_no_number_for_any_setting(given, place, message) -> None:
     _, found = validate_settings(read_signature("floats", floats), given)
     assert {".".join(map(str, path)): told for path, told in found} == {place: message}
+
+
+def ends(image: int, *, most: Annotated[float, AllowInfNan(False)] | Literal["auto"] = 1.0) -> int:
+    """Take a number that has an end."""
+    return image
+
+
+def test_infinity_is_no_number_for_a_setting_that_has_an_end() -> None:
+    _, found = validate_settings(read_signature("ends", ends), {"most": math.inf})
+    assert found == [(("most",), "must be a finite number, got inf")]
 
 
 def test_no_limit_and_a_default_that_is_nan_may_be_given() -> None:

@@ -5,6 +5,8 @@ from hypothesis import strategies as st
 
 from helpers_filters import ORIGIN, PITCH, drawn, image_of
 from helpers_panel import panel_frames, real_panel_frames
+from tactile_graph import loads
+from tactile_graph.errors import PipelineError
 from tactile_graph.wires import Image
 from tactile_graph_filters.contacts.contacts import contacts
 from tactile_graph_filters.contacts.sharpen_contacts import sharpen_contacts
@@ -62,6 +64,14 @@ def test_a_single_cell_is_a_smaller_cell_about_its_middle():
     assert (sharp.x_cm, sharp.y_cm) == pytest.approx(middle)
     assert 0 < sharp.area_cm2 < PITCH[0] * PITCH[1]
     assert sharpen_contacts(one.contacts, share=0.999, finer=2).contacts[0] is one.contacts[0]
+
+
+def test_cells_are_not_cut_into_more_than_memory_holds():
+    text = (
+        "pipeline: fine\nnodes: {one: {step: sharpen_contacts, in: frame, with: {finer: 1000000}}}"
+    )
+    with pytest.raises(PipelineError, match="finer: must be <= 64, got 1000000"):
+        loads(f"{text}\noutputs: [one]\n")
 
 
 @pytest.mark.slow

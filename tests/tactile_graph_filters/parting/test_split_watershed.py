@@ -42,6 +42,17 @@ def test_one_disc_with_voids_is_not_split_once_gaps_are_bridged():
     assert found.contacts[0].n_cells == on.count
 
 
+def test_gaps_longer_than_the_pad_are_no_longer_than_it():
+    """A square of 2 000 001 cells a side would take terabytes."""
+    mask = drawn("""
+        ##...##
+        ##...##
+    """)
+    image = image_of(np.where(mask.values, 1.0, 0.0))
+    whole, huge = (split_watershed(image, mask, bridge_cells=n) for n in (7, 1_000_000))
+    assert [c.box for c in huge.contacts] == [c.box for c in whole.contacts]
+
+
 def test_neck_says_how_narrow_a_neck_is():
     counts = [
         split_watershed(PAIR, footprint(PAIR), by="distance", neck=neck).count

@@ -213,3 +213,12 @@ def test_a_short_arc_of_an_ellipse_is_one_where_its_points_are_sharp() -> None:
 
 def test_an_ellipse_made_by_hand_took_no_rounds():
     assert FittedEllipse(1.0, 2.0, 5.0, 3.0, 0.2, 0.1, 9).iterations == 0
+
+
+def test_a_circle_has_no_angle_of_its_own():
+    """The angle of axes that differ in their last bits is any."""
+    turn = 2.0 * np.pi * np.arange(12) / 12 + 0.1
+    for fit in (fit_ellipse, fit_ellipse_direct):
+        found = fit(Points(np.column_stack([8.0 + 4.0 * np.cos(turn), 5.0 + 4.0 * np.sin(turn)])))
+        assert found.semi_minor_cm == pytest.approx(found.semi_major_cm, rel=1e-9)
+        assert found.angle_rad == 0.0

@@ -15,6 +15,10 @@ from tactile_graph_fitters.rectangle.fit_rectangle import equations, fit_rectang
 
 pytestmark = pytest.mark.usefixtures("warm_kernels")
 
+ALONG = np.linspace(-4.0, 4.0, 12)
+LONG = np.array([(u, v) for v in (2.0, -2.0) for u in ALONG])
+SHORT = np.array([(-4.0, v) for v in (-1.5, -0.5, 0.5, 1.5)])
+
 
 def five(r):
     return np.array([r.x_cm, r.y_cm, r.length_cm, r.breadth_cm])
@@ -114,6 +118,25 @@ def test_squares_are_declared_ambiguous():
     assert got.ambiguous
     assert got.length_cm == pytest.approx(6.0)
     assert not fit_rectangle(points(rectangle_xy(Rectangle(0, 0, 12, 6, 0.2), 60))).ambiguous
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.4])
+@pytest.mark.parametrize(
+    ("xy", "breadth"),
+    [(LONG, 4.0), (np.vstack([LONG, SHORT]), 4.0), (np.vstack([LONG[:12], SHORT]), 3.5)],
+)
+def test_a_side_without_points_ends_with_the_others(xy, breadth, turn):
+    got = fit_rectangle(points(turned(xy, turn)))
+    assert (got.length_cm, got.breadth_cm) == pytest.approx((8.0, breadth))
+
+
+@pytest.mark.parametrize("seed", [45, 147, 198])
+def test_a_side_without_points_lies_as_far_out_in_a_mirror(seed):
+    """Of the same cost everywhere, it was left where the search happened to end."""
+    xy = np.random.default_rng(seed).integers(0, 16, (12, 2)).astype(float)
+    here = fit_rectangle(points(xy))
+    for there in (fit_rectangle(points(xy * [-1.0, 1.0])), fit_rectangle(points(xy[:, ::-1]))):
+        assert five(there)[2:] == pytest.approx(five(here)[2:], abs=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -57,3 +57,12 @@ def test_a_square_is_ambiguous_and_a_slender_one_is_not():
     square, slender = (Rectangle(0, 0, 9, breadth, 0.1).outline_cm() for breadth in (9, 3))
     assert min_area_rectangle(points(square)).ambiguous
     assert not min_area_rectangle(points(slender)).ambiguous
+
+
+def test_of_two_as_small_either_is_ambiguous():
+    """Which one is found may hang on the last bit: 14 by 11 or 12.7 by 12.1, both of 154."""
+    xy = np.array([[11, 15], [14, 8], [15, 15], [15, 1], [7, 9], [4, 6]], float)
+    for its in (xy, xy * [1.0, -1.0], xy * [-1.0, 1.0], xy[:, ::-1]):
+        got = min_area_rectangle(points(its))
+        assert got.area_cm2 == pytest.approx(154.0)
+        assert got.ambiguous

@@ -141,6 +141,23 @@ def test_no_monotone_law_changes_the_answer_and_it_is_near(shape, true):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("masked", [False, True])
+def test_readings_that_differ_by_next_to_nothing_keep_their_order(masked):
+    """Next to 1 a reading of 1e-20 is nothing; neighbouring numbers have one logarithm."""
+    step = made(FootprintByOrder, on_pad="whole")
+    image = drawn(Circle(10.0, 9.5, 5.5), 60.0, np.random.default_rng(3))
+    touched = image.values > 0.0
+    mask = (Mask(touched, image.pitch_cm, image.origin_cm),) if masked else ()
+    ranks = np.argsort(np.argsort(image.values, axis=None)).reshape(image.shape) + 1.0
+    plain = step(image, *mask)
+    for bent in (1e-20 * image.values, 1e-15 * (1.0 + ranks * 2.0**-52)):
+        found = step(image.with_values(np.where(touched, bent, 0.0), "raw"), *mask)
+        assert (found.x_cm, found.y_cm, found.radius_cm) == (
+            plain.x_cm, plain.y_cm, plain.radius_cm,
+        )  # fmt: skip
+
+
+@pytest.mark.slow
 def test_touch_alone_still_locates_and_order_adds():
     step, sharp, blunt = made(FootprintByOrder, on_pad="whole"), [], []
     for seed in range(8):

@@ -102,3 +102,4 @@ def test_only_gaps_between_cells_of_one_owner_are_bridged() -> None:
     assert bridged(owner, 2).tolist() == [[1, 1, 1, 0, 2, 2, 2, 2]]
     assert bridged(owner.T, 2).T.tolist() == bridged(owner, 2).tolist()
     assert bridged(np.array([[1, 2, 1]], np.int32), 1).tolist() == [[1, 2, 1]]
+    assert bridged(owner, 1_000_000).tolist() == bridged(owner, 8).tolist()

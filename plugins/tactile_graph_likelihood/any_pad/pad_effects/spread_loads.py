@@ -16,13 +16,16 @@ from tactile_graph_likelihood.single.density.load_shares import foam_weights
 FAINTEST = 1e-5
 """Share of a load that foam need not carry farther."""
 
+FARTHEST = 1 << 20
+"""Cells beyond which none is carried, whatever the foam."""
+
 TINY = 1e-12
 
 
 @compiled_as_is
 def shares_of(width: float) -> Values:
     """Return `foam_weights` as far as more than the faintest share is carried on."""
-    weights, n = foam_weights(width), 0
+    weights, n = foam_weights(width, FARTHEST), 0
     beyond = 0.5 * (1.0 - weights[0])
     while n + 1 < weights.shape[0] and beyond > FAINTEST:
         n += 1

@@ -204,9 +204,9 @@ def blurred(shares: Values, width: float, box: Box, rows: int, columns: int) -> 
 
 
 @compiled_as_is
-def foam_weights(width: float) -> Values:
-    """Return the shares of a load that foam passes on 0, 1, 2, … cells along an axis."""
-    reach = math.ceil(FOAM_REACH * width) + 1
+def foam_weights(width: float, most: int) -> Values:
+    """Return the shares of a load that foam passes on 0, 1, 2, … cells, ``most``, along an axis."""
+    reach = min(math.ceil(min(FOAM_REACH * width, most)) + 1, most)
     weights = np.empty(reach + 1)
     for k in range(reach + 1):
         far = 0.5 * math.erfc(-(k + 0.5) / width * SQRT_HALF)
@@ -217,7 +217,7 @@ def foam_weights(width: float) -> Values:
 @compiled_as_is
 def passed_on(values: Values, width: float, box: Box, rows: int, columns: int) -> Values:
     """Return the same of any values, the faintest too."""
-    weights = foam_weights(width)
+    weights = foam_weights(width, max(rows, columns))
     turned = _blurred_down(values, weights, box[0], rows)
     return _blurred_down(turned.T.copy(), weights, box[1], columns).T.copy()
 

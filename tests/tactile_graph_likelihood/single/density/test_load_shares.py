@@ -19,7 +19,12 @@ from tactile_graph_likelihood.single.any_pressure import (
     mixed,
 )
 from tactile_graph_likelihood.single.density.element_terms import FALL, LEAN_X, LEAN_Y
-from tactile_graph_likelihood.single.density.load_shares import press, shares_of
+from tactile_graph_likelihood.single.density.load_shares import (
+    foam_weights,
+    passed_on,
+    press,
+    shares_of,
+)
 from tactile_graph_likelihood.single.fit_footprint import FitFootprint
 from tactile_graph_likelihood.single.footprint_of import FootprintDisc, FootprintRectangle
 from tactile_graph_likelihood.single.model import Model
@@ -283,3 +288,15 @@ def test_foam_nobody_told_of_is_found():
     assert np.mean([steps[0](image).posterior.pressures.get("foam", 0.0) for image in images]) > 0.7
     balls = [image for _, image in frames(30, 8, fall=0.5)]
     assert np.mean([steps[0](image).posterior.pressures.get("foam", 0.0) for image in balls]) < 0.1
+
+
+@pytest.mark.slow
+def test_foam_wider_than_the_pad_takes_no_longer_the_wider_it_is():
+    """Loads were carried over as many cells as foam is wide, nearly all beyond the pad."""
+    values, box = np.zeros((16, 16)), (0, 0, 16, 16)
+    values[5:9, 4:12] = 1.0
+    wide, wider = (passed_on.call(values, width, box, 16, 16) for width in (1e3, 1e6))
+    assert wide == pytest.approx(np.full((16, 16), values.sum() / 256), rel=1e-3)
+    assert wider == pytest.approx(wide, rel=1e-3)
+    assert len(foam_weights.call(1e9, 16)) == 17
+    assert foam_weights.call(0.7, 16) == pytest.approx(foam_weights.call(0.7, 1000), abs=0.0)
