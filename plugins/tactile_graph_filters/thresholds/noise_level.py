@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from tactile_graph.quantities import unit_of
 from tactile_graph.wires import Image, Mask
-from tactile_graph_filters.readings.clipped_noise import FEW_STEPS, clipped_noise, is_anywhere
+from tactile_graph_filters.readings.clipped_noise import FEW_STEPS, is_anywhere
 from tactile_graph_filters.readings.dead_below import dead_below
 from tactile_graph_filters.readings.dead_lines import EQUAL_SHARE, dead_lines
+from tactile_graph_filters.readings.line_noise import cut_off_noise
 from tactile_graph_filters.readings.ordered import in_order
 
 Values = NDArray[np.float64]
@@ -59,7 +60,7 @@ def noise_level(image: Image) -> float:
     -------
     float
         The lower quartile, plus ten standard deviations of the noise, as the distance of the
-        5 % quantile from the quartile tells it (where both are cut off: `clipped_noise`), or 3 %
+        5 % quantile from the quartile tells it (where both are cut off: `cut_off_noise`), or 3 %
         of the peak's height if that is more. Of 52 cells or fewer it is raised by `FEW_CELLS`, but
         not above readings that plainly stand apart (`BEYOND`); of 4 or fewer no noise is known.
         Above every reading where all are equal; infinite where no cell is valid.
@@ -108,7 +109,7 @@ def lower_readings(image: Image) -> tuple[float, float, float] | None:
     """Return the 5 % quantile, the lower quartile and the peak of the cells that are read.
 
     Where both quantiles are the same, the first is what it were if nothing had cut off the noise
-    that `clipped_noise` finds above. None where no cell is valid.
+    that `cut_off_noise` finds above. None where no cell is valid.
     """
     found = _lower(image)
     return None if found is None else found[:3]
@@ -150,7 +151,7 @@ def _lower_beside(
     if lowest == base < peak:
         ordered = in_order(seen)
         of_frame = cells_of(image.values, usable)
-        sigma = clipped_noise.call(*of_frame, ordered, base, least_step(ordered))
+        sigma = cut_off_noise.call(*of_frame, ordered, base, least_step(ordered))
         return usable, (lowest - LOW_TO_MIDDLE_SD * float(sigma), base, peak, seen[:0])
     return usable, (lowest, base, peak, seen)
 
@@ -180,7 +181,7 @@ def _untouched_lines(
 
 
 def cells_of(values: NDArray[Any], usable: Cells | None) -> tuple[Values, Cells]:
-    """Return readings and which of them count, as `clipped_noise` takes them."""
+    """Return readings and which of them count, as `cut_off_noise` takes them."""
     known = EVERY if usable is None else np.ascontiguousarray(usable)
     return np.ascontiguousarray(values, np.float64), known
 

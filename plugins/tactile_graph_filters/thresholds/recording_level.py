@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactile_graph.errors import UsageError
 from tactile_graph.plugins.registry import installed
@@ -19,8 +20,12 @@ TOGETHER = 256
 """Cells in which noise that is cut off shows: of smaller pads, frames are looked at together."""
 MOST_APART = 3.0
 """Times what a frame's largest reading lies above its lower quartile, by which noise may spread."""
+MANY, MORE = 0.9, 2.0
+"""Quantile of the spread of frames in which noise is cut off, and times the median, from which on
+it is that of the recording."""
 
 Readings = tuple[float, float, float]
+Values = NDArray[np.float64]
 
 
 class RecordingLevel(NamedTuple):
@@ -44,6 +49,7 @@ def recording_level(recording: Path | Mapping[str, Any]) -> RecordingLevel:
     RecordingLevel
         Base and noise are the medians of what `noise_level` finds in each frame, the peak is the
         highest of all: an empty frame, or one with a light touch, has the level of all others.
+        Of frames in which noise is cut off and that differ in it, those with much of it count.
         Where frames of fewer than 256 cells show no noise, several are looked at as one.
 
     Raises
@@ -54,7 +60,7 @@ def recording_level(recording: Path | Mapping[str, Any]) -> RecordingLevel:
     DataError
         If the file is no recording.
     """
-    found, quantities = [], set()
+    found, cut_off, quantities = [], [], set()
     small: list[tuple[Image, Readings]] = []
     together: list[Readings] = []
     for frame in _frames(recording):
@@ -64,6 +70,7 @@ def recording_level(recording: Path | Mapping[str, Any]) -> RecordingLevel:
         if readings is None:
             continue
         found.append(readings)
+        cut_off.append(bool(readings[1] <= image.filled(np.inf).min()))
         if image.values.size < TOGETHER:
             if small and small[0][0].columns != image.columns:
                 small = []
@@ -79,11 +86,24 @@ def recording_level(recording: Path | Mapping[str, Any]) -> RecordingLevel:
     low, base, peaks = np.array(found).T
     spread = float(np.median(base - low))
     if spread == 0.0 and together:
-        low, middle, _ = np.array(together).T
-        spread = float(np.median(middle - low))
+        lowest, middle, _ = np.array(together).T
+        spread = float(np.median(middle - lowest))
+    spread = max(spread, _hum(base - low, np.array(cut_off), spread))
     level = level_above(spread, float(np.median(base)), float(peaks.max()))
-    told = f"the noise of {name}, {len(found)} frames"
+    what = "noise" if spread > 0.0 else "zero, as no noise shows,"
+    told = f"the {what} of {name}, {len(found)} frames"
     return RecordingLevel(level, quantities.pop(), told)
+
+
+def _hum(spreads: Values, cut_off: NDArray[np.bool_], usual: float) -> float:
+    """Return the spread that many frames reach whose noise is cut off; 0 if it is about the usual.
+
+    Hum leaves some frames all but at rest, in which nothing tells how far it reaches.
+    """
+    if cut_off.mean() < 0.5:
+        return 0.0
+    most = float(np.quantile(spreads[cut_off], MANY))
+    return most if most > MORE * usual else 0.0
 
 
 def _of_all(frames: list[tuple[Image, Readings]]) -> Readings | None:

@@ -59,7 +59,7 @@ def _empty_pad(found: LearnedPad) -> Picture:
     if handles:
         figure.legend(handles, labels, loc="outside lower center", ncols=4)
     rest = found.resting
-    where = "of the empty pad" if rest.from_empty else "with objects; each element where untouched"
+    where = "of the empty pad" if rest.from_empty else "in all; each element where untouched"
     caption = (
         f"From {rest.frames} frames {where}. Colours span 1 to 99 % of the good elements; marked "
         "are those that are no good."

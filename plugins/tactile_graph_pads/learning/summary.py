@@ -22,7 +22,7 @@ def summary(found: LearnedPad) -> Iterator[tuple[str, str]]:
     learned, rest = found.learned, found.resting
     unit = UNITS[learned.reading]
     offset = found.elements.offset[found.elements.good]
-    source = "empty" if rest.from_empty else "with objects, where untouched"
+    source = "of the empty pad" if rest.from_empty else "in all, each element where untouched"
     pitch = " x ".join(f"{p:.4g}" for p in learned.pitch_cm)
     yield "pad", f"{learned.rows} x {learned.columns} elements, pitch {pitch} cm, in {unit}"
     yield (

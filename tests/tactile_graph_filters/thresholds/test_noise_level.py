@@ -90,3 +90,17 @@ def test_from_8_by_8_cells_on_and_without_noise_the_level_is_the_plain_one():
     low, base, _ = lower_readings(image_of(values))
     assert noise_level(image_of(values)) == base + 10.0 * ((base - low) / 0.9704)
     assert noise_level(image_of([[0.0, 0.0, 0.0], [0.0, 5.0, 0.0]])) == pytest.approx(0.15)
+
+
+@pytest.mark.parametrize("load", [0.0, 300.0])
+def test_hum_that_is_cut_off_at_zero_lies_below_the_level(load: float) -> None:
+    rng = np.random.default_rng(6)
+    found = []
+    for _ in range(20):
+        hum = 5.0 * np.sin(rng.uniform(0.0, 2.0 * np.pi) + 0.41 * np.arange(16)[:, None])
+        values = rng.normal(hum, 2.0, (16, 16))
+        values[5:9, 5:10] += load
+        values = np.clip(np.round(values), 0.0, 4095.0)
+        level = noise_level(image_of(values))
+        found.append(values[values < 100.0].max() < level < 60.0)
+    assert np.mean(found) >= 0.9

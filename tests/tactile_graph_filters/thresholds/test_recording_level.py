@@ -56,6 +56,27 @@ def test_noise_that_is_cut_off_is_told_by_several_frames_of_a_small_pad(
     assert recording_level(tmp_path / "r.npy").level == pytest.approx(0.03 * values.max())
 
 
+@pytest.mark.parametrize(("steps", "turn"), [(1.0, 0.41), (5.0, 0.1), (5.0, 0.41), (5.0, 3.0)])
+def test_hum_that_is_cut_off_lies_below_the_level_of_an_empty_recording(
+    steps: float, turn: float, tmp_path: Path
+) -> None:
+    rng = np.random.default_rng(3)
+    turns = rng.uniform(0.0, 2.0 * np.pi, (40, 1, 1)) + turn * np.arange(16)[:, None]
+    values = steps * np.sin(turns) + rng.normal(0.0, 0.4 * steps, (40, 16, 16))
+    values = np.maximum(np.rint(values), 0.0)
+    np.save(tmp_path / "r.npy", values)
+    found = recording_level(tmp_path / "r.npy")
+    assert values.max() < found.level < 15.0 * steps
+    assert found.told.startswith("the noise of ")
+
+
+def test_a_recording_that_shows_no_noise_says_so(tmp_path: Path) -> None:
+    values = np.zeros((3, 16, 16))
+    values[:, 4:8, 4:8] = 200.0
+    np.save(tmp_path / "r.npy", values)
+    assert recording_level(tmp_path / "r.npy").told.startswith("the zero, as no noise shows, of ")
+
+
 @pytest.mark.slow
 def test_every_frame_is_parted_by_the_same_level(frames: np.ndarray, recording: Path) -> None:
     """Frame by frame an empty pad has a lower level than a loaded one, and a level of its own."""

@@ -41,6 +41,14 @@ def test_an_empty_recording_alone_makes_a_pad_with_noise_and_offset(tmp_path: Pa
     assert "No objects were recorded" in said
 
 
+@pytest.mark.slow
+def test_empty_frames_among_those_of_objects_are_not_said_to_bear_any(tmp_path: Path) -> None:
+    empty, objects = MadeUpPad().recorded(tmp_path, n_objects=40)
+    said = " ".join(run(empty, objects).split())
+    assert re.search(r"from \d+ frames in all, each element where untouched", said)
+    assert "frames of the empty pad" in " ".join(run("--empty", empty).split())
+
+
 def test_a_table_that_was_edited_stays_unless_it_is_to_be_overwritten(tmp_path: Path) -> None:
     empty, _ = MadeUpPad().recorded(tmp_path, n_objects=1)
     table = tmp_path / "pad.elements.csv"

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from tactile_graph.compiled import compiled_twin_of
 from tactile_graph.errors import DataError, Degenerate
 from tactile_graph.wires import Image
-from tactile_graph_filters.readings.clipped_noise import clipped_noise
 from tactile_graph_filters.readings.hot_lines import row_offsets
+from tactile_graph_filters.readings.line_noise import cut_off_noise
 from tactile_graph_filters.readings.ordered import in_order
 from tactile_graph_likelihood.any_pad.observation.clump import NEAR
 from tactile_graph_likelihood.any_pad.observation.frame_noise import frame_noise, noise_of_sorted
@@ -196,7 +196,7 @@ def _rising_plain(
         return False, 0.0, 0.0, 0, 0, 0.0, EVERY, np.zeros((0, 0))
     zero, sigma, step = noise_of_sorted.reference(sample)
     if sigma == 0.0:
-        sigma = clipped_noise.reference(kept, known, sample, zero, step)
+        sigma = cut_off_noise.reference(kept, known, sample, zero, step)
     least = max(deviations * sigma, 0.5 * step)
     down = row_offsets.reference(values, known, zero, sigma, step)
     across = row_offsets.reference(values.T, known.T, zero, sigma, step)
@@ -224,7 +224,7 @@ def rising(values, known, sample, deviations, wanted):  # type: ignore[no-untype
         return False, 0.0, 0.0, 0, 0, 0.0, shows, above
     zero, sigma, step = noise_of_sorted(sample)
     if sigma == 0.0:
-        sigma = clipped_noise(values, known, sample, zero, step)
+        sigma = cut_off_noise(values, known, sample, zero, step)
     least, most = max(deviations * sigma, 0.5 * step), 0.0
     down = row_offsets(values, known, zero, sigma, step)
     across = row_offsets(values.T, known.T, zero, sigma, step)
