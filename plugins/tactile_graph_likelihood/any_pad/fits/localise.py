@@ -25,6 +25,7 @@ from tactile_graph_likelihood.any_pad.observation.learned_pad import unevenness_
 from tactile_graph_likelihood.any_pad.pad_effects.from_frame import (
     LAW,
     is_partly_hidden,
+    room_on_pad,
     strays_beyond,
 )
 from tactile_graph_likelihood.any_pad.pad_effects.gap import sized
@@ -53,6 +54,7 @@ from tactile_graph_likelihood.single.density.element_terms import UNKNOWN
 from tactile_graph_likelihood.single.model import EVERY, MORE, SECOND, Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
 from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_likelihood.single.sampling.sample import beyond_the_pad
 
 FAINT = Pattern(1.0, 0.4, 2.5)
 """From which on another pressure is worth its time; where a quick answer will do, it is `CLEAR`."""
@@ -65,6 +67,10 @@ MANY = 8.0
 
 THINNEST = 0.12
 """Half of a rectangle's breadth in pitches, at least, where nothing else is told: a book's edge."""
+
+LEAN, LEANING_WHOLE = "lean", 0.9
+"""Of outlines that lean and end near the pad's edge, the share that lies on it whole, at most: what
+is cut off leans more often than not, as a plate does that its other half pulls down."""
 
 PRESSURES: dict[str, list[float]] = {EVEN: [], **FIRST}
 """What each pressure estimates beside an even face's numbers, where its fit begins."""
@@ -367,6 +373,22 @@ class AnyPad:
         Foam, which makes outlines too large, may be why.
         """
         return is_partly_hidden(self.told.kind, readings, self.told.point_of(top))
+
+    def beyond(self, part: str, readings: Readings, top: Likeliest) -> Values | None:
+        """Return the covariance by which sides beyond the pad's edge widen a top's outline.
+
+        None where they all lie more than a pitch before it, and of a disc, whose arc tells of them.
+        """
+        kind = self.told.kind
+        if kind == DISC or readings.is_wide:
+            return None
+        if room_on_pad(kind, readings, self.told.point_of(top)) > 1.0:
+            return None
+        whole = self.told.whole
+        if part == LEAN and whole < 1.0:
+            whole = min(whole, LEANING_WHOLE)
+        problem = changed(self._fit(part), whole=whole).problem(readings)
+        return beyond_the_pad.call(problem, top.mode.p, top.mode.root)
 
     def _pressed(self, part: str, readings: Readings, even: Likeliest) -> Likeliest:
         n, p = self.n_even, self.told.point_of(even)

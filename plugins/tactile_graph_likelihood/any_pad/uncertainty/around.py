@@ -129,6 +129,7 @@ class _Around:
             # Learned gains leave so little that what is always unseen would look vague.
             0.0 if self.fits.unevened is None else unseen,
         )
+        whole = self._cut_off(whole, shares)
         if readings.filtered:
             whole = as_filtered(whole, float(readings.grid[2]))
         if readings.is_wide and readings.gap is not None and not readings.gap.is_told:
@@ -166,6 +167,22 @@ class _Around:
         if self.readings.through_foam is not None:
             its = changed(its, pressures=on_foam(its.pressures))
         return its
+
+    def _cut_off(self, whole: AnyPadPosterior, shares: Mapping[str, float]) -> AnyPadPosterior:
+        """Return a posterior that is wider towards where sides may lie beyond the pad's edge.
+
+        A sample of an even rectangle knows of these by itself.
+        """
+        kept = {part: share for part, share in shares.items() if share > NEGLIGIBLE}
+        if self.fits.told.kind == RECTANGLE and [*kept] == [EVEN] and not self.fits.quick:
+            return whole
+        covariance = whole.covariance
+        for part, share in kept.items():
+            beyond = self.fits.beyond(part, self.readings, self.tops[part])
+            if beyond is not None:
+                covariance = covariance.copy()
+                covariance[:6, :6] += share / sum(kept.values()) * beyond[:6, :6]
+        return changed(whole, covariance=covariance)
 
     def _missed(self) -> float:
         """Return how much what an even face's outline misses lies to a side, 0 where foam blurs it.
