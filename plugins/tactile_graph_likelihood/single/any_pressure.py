@@ -25,6 +25,9 @@ LEAN, ROUND = 0.15, 0.15
 """Probability, before a frame is read, that a face leans; that its load falls to the rim, be it
 that the face is round or that foam spreads the load."""
 
+RISING = 0.05
+"""That it rises to the rim, as of a flat stiff face on a soft layer."""
+
 FOAM_ODDS = 0.15
 """Of foam over a round face, before a frame is read: foam is a pad's own and mostly known."""
 
@@ -45,10 +48,12 @@ class Pattern(NamedTuple):
     lean: float
     fall: float
     alike: float
+    rise: float
 
 
-CLEAR = Pattern(1.5, 1.5, 2.5)
-"""From which on a lean or a fall, and foam where neighbours are alike, are worth a fit's time."""
+CLEAR = Pattern(1.5, 1.5, 2.5, 2.5)
+"""From which on a lean, a fall or a rise, and foam where neighbours are alike, are worth a fit's
+time."""
 
 HOPELESS = 2.0
 """Nats by which the evidence of a rough fit may fall behind an even face's and still be looked at:
@@ -57,10 +62,27 @@ with its chance beforehand against it, it would have a share of 3 % at most."""
 WIDER = 0.15
 """By how much a falling pressure's outline is larger than an even one's that looks like it."""
 
-EVEN = "even"
+NARROWER = 0.06
+"""By how much a rising pressure's outline is smaller than an even one's that looks like it."""
+
+EVEN, RISE = "even", "rise"
 
 FIRST = {"lean": [0.0, 0.0], "fall": [FALL_GUESSED], "foam": [math.log(GUESSED_FOAM)]}
 """What a fit begins with, beside an even face's numbers."""
+
+OWN = {**FIRST, RISE: [-0.4]}
+"""The same, with a face that presses with its rim, of which a known pad's models know nothing."""
+
+BOTH = {
+    "lean and fall": ("lean", "profile"),
+    "foam and fall": ("foam", "profile"),
+    "foam and lean": ("foam", "lean"),
+}
+"""What is estimated of faces that lean or lie under foam, and fall, rise or lean, too."""
+
+COUNTS = {part: len(own) for part, own in {**OWN, "profile": [0.0]}.items()}
+COUNTS |= {both: sum(COUNTS[part] for part in parts) for both, parts in BOTH.items()}
+"""How many numbers each estimates beside an even face's."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +170,8 @@ def asked_by(
     lean = any(its.lean >= least.lean for its in evens)
     fall = any(its.fall >= least.fall for its in evens)
     alike = any(its.neighbours >= least.alike for its in evens)
-    asked = {"lean": lean, "fall": fall, "foam": fall or alike}
+    rise = any(its.fall <= -least.rise for its in evens)
+    asked = {"lean": lean, "fall": fall, "foam": fall or alike, RISE: rise}
     return [part for part in others if asked[part]]
 
 
@@ -173,6 +196,8 @@ def chances(
         Of foam under which elements keep their own gains, over a round face.
     """
     found = {"lean": LEAN} if "lean" in others else {}
+    if RISE in others:
+        found[RISE] = RISING
     if "fall" in others and "foam" in others:
         log_odds = log_of(foam_odds)
         if (fall := others["fall"]) is not None:
@@ -201,7 +226,7 @@ def mixed(its: Mapping[str, Posterior], before: Mapping[str, float]) -> Posterio
     logs = np.array([one.log_evidence + log_of(before[part]) for part, one in its.items()])
     log_evidence = float(np.logaddexp.reduce(logs))
     shares = np.exp(logs - log_evidence)
-    n = min(len(one.mean) - len(FIRST.get(part, [])) for part, one in its.items())
+    n = min(len(one.mean) - COUNTS.get(part, 0) for part, one in its.items())
     best = every[int(shares.argmax())]
     points = np.concatenate([_turned_to(best, one, n) for one in every])
     weights = np.concatenate([s * one.weights for s, one in zip(shares, every, strict=True)])

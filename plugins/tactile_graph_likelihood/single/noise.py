@@ -26,6 +26,7 @@ ESTIMATED = {
     "voids": (VOIDS,),
     "foam": (FOAM,),
     "fall": (FALL,),
+    "profile": (FALL,),
     "lean": (LEAN_X, LEAN_Y),
     "contrast": (CONTRAST,),
 }
@@ -41,6 +42,10 @@ SPREADS = {SIGMA: 0.4, VOIDS: 0.8, FOAM: 0.7, FALL: 0.3, LEAN_X: 0.7, LEAN_Y: 0.
 
 FALL_GUESSED = 0.5
 """The middle of the guess: a ball's (Hertz)."""
+
+PROFILE_STD = 0.5
+"""The deviation of a fall that may be a rise as well, around an even face: a flat stiff one's on a
+soft layer is -1/2."""
 
 GUESSED_FOAM = 0.5
 """Pitches; the middle of the guess where foam is estimated and none is given."""
@@ -74,9 +79,9 @@ class Noise:
     foam_cm : float
         Width (standard deviation) over which foam spreads the load.
     estimated : tuple of str
-        Which of sigma, voids, foam, fall, lean and contrast are estimated with the object; the
-        values here are then the middle of the guess. A pressure whose fall or lean is not estimated
-        has none.
+        Which of sigma, voids, foam, fall, profile (a fall that may be a rise), lean and contrast
+        are estimated with the object; the values here are then the middle of the guess. A pressure
+        whose fall or lean is not estimated has none.
     contrast : float
         Power of an element's coverage that its reading goes with: 1 where readings are loads.
     contrast_std : float
@@ -114,11 +119,14 @@ class Noise:
         ]
         places = [place for name in self.estimated for place in ESTIMATED[name]]
         guess: list[float] = []
+        spreads = SPREADS | {CONTRAST: self.contrast_std}
+        if "profile" in self.estimated:
+            spreads[FALL] = PROFILE_STD
         for place in places:
             middle = numbers[place]
             if place < FALL:
                 middle = math.log(middle / (1.0 - middle) if place == VOIDS else middle)
-            guess += [middle, self.contrast_std if place == CONTRAST else SPREADS[place]]
+            guess += [middle, spreads[place]]
         return NoiseTaken(
             np.array(numbers),
             np.array(places, dtype=np.int64),

@@ -7,13 +7,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from helpers_modes import plainly
 from tactile_graph.wires import Image, Rectangle
 from tactile_graph_likelihood.any_pad.fits.left_open import NO_FALL, SOME_FALL, unseen_share
 from tactile_graph_likelihood.any_pad.locate import LocateRectangle
 from tactile_graph_likelihood.any_pad.uncertainty.posterior import AnyPadPosterior
 from tactile_graph_likelihood.any_pad.uncertainty.widened import evenly_spread, resized
 from tactile_graph_likelihood.geometry.outlines import RECTANGLE
+from tactile_graph_likelihood.settings import LocateSettings
+from tactile_graph_likelihood.single.density.log_posterior import log_rest
+from tactile_graph_likelihood.single.model import Model
+from tactile_graph_likelihood.single.noise import Noise
 from tactile_graph_likelihood.single.posterior import normal_reach
+from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_likelihood.single.sampling.sample import _with_side_moved
 
 sys.path.insert(0, str(Path(__file__).parents[3] / "benchmarks"))
 from second_simulator import BASE, KINDS, Bench, TrueObject, round_face
@@ -100,3 +107,46 @@ def fall_left(image: Image) -> float:
     readings = observed(image, step._pad, step._gap_cm)
     _, _, even = step._any_pad.first(readings)
     return even.fit.fall
+
+
+def leaning_plates(beyond, lean, gain, n=4):
+    """Return frames of even steps along a plate's length, its left end beyond the pad or not."""
+    rng = np.random.default_rng(1)
+    gains = np.exp(rng.normal(0.0, gain, (32, 32)))
+    u = (np.arange(320) + 0.5) * 0.05
+    for _ in range(n):
+        x, y = rng.uniform(1.0, 3.5) + (0.0 if beyond else 6.0), rng.uniform(5.0, 11.0)
+        inside = (abs(u - x) < 5.0) * (abs(u[:, None] - y) < 3.0)
+        pressure = inside * (1.0 + lean * (u - x) / 5.0)
+        loads = pressure.reshape(32, 10, 32, 10).mean((1, 3))
+        volts = np.round(700.0 * loads * gains + 40.0 + rng.normal(0.0, 5.0, loads.shape))
+        yield Image(volts, (0.5, 0.5), (0.0, 0.0), "values"), (x, y)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("warm_kernels")
+@pytest.mark.parametrize(("lean", "gain"), [(0.2, 0.05), (0.4, 0.05), (0.4, 0.25)])
+def test_a_leaning_plate_that_the_edge_cuts_is_wide_and_flagged(lean, gain):
+    step = LocateRectangle(LocateSettings(on_pad="partly"))
+    for image, (x, _) in leaning_plates(True, lean, gain):
+        found = step.posterior(image)
+        assert abs(found.mean[0] - x) < 3.0 * found.std(0)  # 27 when it was not widened
+        assert not found.fits
+    whole = [step.posterior(image) for image, _ in leaning_plates(False, lean, gain)]
+    assert sum(found.fits for found in whole) >= 3
+    assert np.median([found.centre_std_cm for found in whole]) < 0.06
+
+
+@pytest.mark.parametrize("side", range(4))
+def test_a_side_is_moved_beyond_the_pad_with_a_lean_as_it_is(side):
+    """What is on the pad stays, so that only what is known beforehand speaks against it."""
+    grid = np.array([0.0, 0.0, 1.0, 1.0, 0.0, 0.0])
+    readings = Readings(grid, np.full((10, 10), 4.0), np.ones((10, 10), np.uint8), 100)
+    model = Model(RECTANGLE, noise=replace(Noise(), estimated=("lean",)), gap_cm=0.0)
+    problem, found = model.problem(readings), []
+    p = np.array([5.0, 5.0, 5.0, 5.0, 0.0, 4.0, 0.5, -0.3])
+    for shift in (1.0, 2.0):
+        trial = p.copy()
+        here = plainly(_with_side_moved)(problem, None, p, side, shift, np.zeros(8), trial)
+        found.append(here - plainly(log_rest)(problem, trial))
+    assert found[0] == pytest.approx(found[1], abs=1e-6)

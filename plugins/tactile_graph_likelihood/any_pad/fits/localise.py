@@ -19,15 +19,18 @@ from tactile_graph_likelihood.any_pad.fits.second_climbs import (
     around_clump,
     beyond_the_edge,
 )
+from tactile_graph_likelihood.any_pad.fits.two_pressures import CLEARLY, LEAN, PARTS, under_two
 from tactile_graph_likelihood.any_pad.fits.waist import gain_by_two
 from tactile_graph_likelihood.any_pad.observation.clump import without_alone
 from tactile_graph_likelihood.any_pad.observation.learned_pad import unevenness_left
 from tactile_graph_likelihood.any_pad.pad_effects.from_frame import (
     LAW,
     is_partly_hidden,
+    room_on_pad,
     strays_beyond,
+    variance_inflation,
 )
-from tactile_graph_likelihood.any_pad.pad_effects.gap import sized
+from tactile_graph_likelihood.any_pad.pad_effects.gap import sized, without_gap
 from tactile_graph_likelihood.any_pad.pad_effects.hollow import without_hollow
 from tactile_graph_likelihood.any_pad.pad_effects.through_foam import has_no_foam, without_foam
 from tactile_graph_likelihood.any_pad.pad_effects.turn_on import (
@@ -43,6 +46,9 @@ from tactile_graph_likelihood.single.any_pressure import (
     CLEAR,
     EVEN,
     FIRST,
+    NARROWER,
+    OWN,
+    RISE,
     WIDER,
     Pattern,
     asked_by,
@@ -53,8 +59,9 @@ from tactile_graph_likelihood.single.density.element_terms import UNKNOWN
 from tactile_graph_likelihood.single.model import EVERY, MORE, SECOND, Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
 from tactile_graph_likelihood.single.readings import Readings
+from tactile_graph_likelihood.single.sampling.sample import beyond_the_pad
 
-FAINT = Pattern(1.0, 0.4, 2.5)
+FAINT = Pattern(1.0, 0.4, 2.5, 1.5)
 """From which on another pressure is worth its time; where a quick answer will do, it is `CLEAR`."""
 
 SHARPER = 0.6
@@ -66,8 +73,15 @@ MANY = 8.0
 THINNEST = 0.12
 """Half of a rectangle's breadth in pitches, at least, where nothing else is told: a book's edge."""
 
-PRESSURES: dict[str, list[float]] = {EVEN: [], **FIRST}
-"""What each pressure estimates beside an even face's numbers, where its fit begins."""
+NEAR_EDGE = 0.25
+"""Pitches before the pad's edge within which a side may as well be cut off by it."""
+
+LEANING_WHOLE = 0.9
+"""Of outlines that lean and end near the pad's edge, the share that lies on it whole, at most: what
+is cut off leans more often than not, as a plate does that its other half pulls down."""
+
+STRANGE = -1.5
+"""Surprise from which on an even face's readings are rather foam's, whatever pattern they leave."""
 
 
 @dataclass(frozen=True)
@@ -147,7 +161,7 @@ class AnyPad:
         found = self._kept.get(pressure)
         if found is None:
             own = ["contrast"] if self.quick else []
-            parts = own if pressure == EVEN else [pressure]
+            parts = own if pressure == EVEN else PARTS.get(pressure, (pressure,))
             found = self._kept[pressure] = self._search(self.told.noise, *parts, "sigma", "voids")
         return found
 
@@ -219,8 +233,7 @@ class AnyPad:
         """
         if readings.is_wide or even.mode.height == -math.inf:
             return readings, even
-        model = self._fit(EVEN)
-        readings, even = unheld(model, readings, even)
+        readings, even = unheld(self._fit(EVEN), readings, even)
         if (bare := unbent(readings)) is not None:
             readings, even = self._by_law(readings, even, *bare)
         if self.foam_cm > 0.0 or asked_by([even.fit], [FOAM], self._faint):
@@ -231,7 +244,25 @@ class AnyPad:
         rim = without_hollow(self.told.kind, readings, p, float(p[-1]))
         if rim is not None:
             readings, even = rim, self.near(rim, p)
-        return (readings, even) if readings.through_foam else sized(model, readings, even)
+        return (readings, even) if readings.through_foam else self._sized(readings, even)
+
+    def _sized(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
+        """Return readings on elements as large as they tell, and the outline on them.
+
+        As a face that presses with its rim tells it, where residuals rise to the rim and that is
+        clearly likelier: such a rim looks as if it lay between elements.
+        """
+        found, its = sized(self._fit(EVEN), readings, even)
+        if readings.gap is None or RISE not in asked_by([even.fit], self._others, self._least):
+            return found, its
+        bare = readings
+        if not readings.gap.is_told:  # slivers that lie between elements hold such a fit fast
+            bare = without_gap(readings)
+        other, rising = sized(self._fit(RISE), bare, self._pressed(RISE, bare, even))
+        worth = variance_inflation(rising.fit.neighbours, readings.touched) ** 2
+        if rising.evidence < its.evidence + CLEARLY * worth:
+            return found, its
+        return other, self.near(other, self.told.point_of(its))
 
     def _by_law(
         self, readings: Readings, even: Likeliest, straight: Readings, denser: float
@@ -339,7 +370,10 @@ class AnyPad:
         if not wide:
             even = beyond_the_edge(its._fit(EVEN), readings, even)
         found = {EVEN: even}
-        asked = [] if wide else asked_by([even.fit], FIRST, CLEAR if self.quick else self._faint)
+        asked = [] if wide else asked_by([even.fit], self._others, self._least)
+        strange = self.told.kind != RECTANGLE and even.fit.surprise < STRANGE
+        if strange and FOAM not in asked and not wide:
+            asked.append(FOAM)
         if asked and "fall" not in asked and has_no_foam(readings):
             asked = [part for part in asked if part != FOAM]  # that of own gains falls to the rim
         hidden = bool(asked) and self.reaches_beyond(readings, even)
@@ -351,7 +385,18 @@ class AnyPad:
                 continue
             if top.mode.height > -math.inf:
                 found[part] = top
+        if len(found) > 1 and not hidden and self.told.kind != RECTANGLE:
+            found |= under_two(its._fit, its.told.point_of, readings, found)
         return found
+
+    @property
+    def _others(self) -> dict[str, list[float]]:
+        """The pressures that are looked at alone; a stiff rectangle's rise is none of its own."""
+        return FIRST if self.told.kind == RECTANGLE else OWN
+
+    @property
+    def _least(self) -> Pattern:
+        return CLEAR if self.quick else self._faint
 
     @cached_property
     def _faint(self) -> Pattern:
@@ -368,9 +413,27 @@ class AnyPad:
         """
         return is_partly_hidden(self.told.kind, readings, self.told.point_of(top))
 
+    def beyond(self, part: str, readings: Readings, top: Likeliest) -> Values | None:
+        """Return the covariance by which sides beyond the pad's edge widen a top's outline.
+
+        None where they all lie well before it, and of a disc, whose arc tells of them.
+        """
+        kind = self.told.kind
+        if kind == DISC or readings.is_wide:
+            return None
+        if room_on_pad(kind, readings, self.told.point_of(top)) > NEAR_EDGE:
+            return None
+        whole = self.told.whole
+        if part == LEAN and whole < 1.0:
+            whole = min(whole, LEANING_WHOLE)
+        problem = changed(self._fit(part), whole=whole).problem(readings)
+        return beyond_the_pad.call(problem, top.mode.p, top.mode.root)
+
     def _pressed(self, part: str, readings: Readings, even: Likeliest) -> Likeliest:
         n, p = self.n_even, self.told.point_of(even)
-        begin = np.concatenate([p[:n], PRESSURES[part], p[-2:]])
+        begin = np.concatenate([p[:n], OWN[part], p[-2:]])
         if part == "fall":
             begin[2 : 2 + sizes.call(self.told.kind)] *= 1.0 + WIDER
+        elif part == RISE:
+            begin[2 : 2 + sizes.call(self.told.kind)] *= 1.0 - NARROWER
         return self._fit(part).likeliest_near(readings, begin)

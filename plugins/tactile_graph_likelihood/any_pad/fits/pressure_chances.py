@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from tactile_graph_likelihood.any_pad.pad_effects.from_frame import variance_inflation
-from tactile_graph_likelihood.single.any_pressure import EVEN, FOAM_ODDS, chances, log_of
+from tactile_graph_likelihood.single.any_pressure import BOTH, EVEN, FOAM_ODDS, chances, log_of
 from tactile_graph_likelihood.single.model import Likeliest
 
 FALL, FOAM = "fall", "foam"
 
 OWN_ODDS = 1.0
 """Of foam under which elements keep their own gains over a round face, before a frame is read."""
+
+TWO = 0.2
+"""Of faces that lean or lie under foam and leave another pressure's pattern, those under both."""
 
 FARTHEST = 4.0
 """Nats by which a round face and foam can be told apart at most: each is but like what it is for,
@@ -45,7 +48,11 @@ def log_chances(
     before = {EVEN: 1.0}
     if len(tops) > 1:
         others = {part: top.fit for part, top in tops.items() if part != EVEN}
-        before = chances(others, touched, foam_odds, own_odds)
+        plain = {part: fit for part, fit in others.items() if part not in BOTH}
+        before = chances(plain, touched, foam_odds, own_odds)
+        for both, (part, _) in BOTH.items():
+            if both in others:
+                before |= {both: TWO * before[part], part: (1.0 - TWO) * before[part]}
     logs = {part: top.evidence / shared for part, top in tops.items()}
     if FALL in logs and FOAM in logs:
         better, worse = sorted((FALL, FOAM), key=logs.__getitem__, reverse=True)

@@ -181,14 +181,17 @@ def is_partly_hidden(kind: int, readings: Readings, p: Values) -> bool:
 
     Then nobody knows where on it its pressure is measured. A disc's rim says where it ends.
     """
-    if kind == DISC:
-        return False
+    return kind != DISC and room_on_pad(kind, readings, p) < -0.5
+
+
+def room_on_pad(kind: int, readings: Readings, p: Values) -> float:
+    """Return how many pitches an outline is away from the pad's edge; below 0 it is beyond."""
     left, top, pitch = readings.grid[:3].tolist()
     (x, y), (wide, high) = p[:2].tolist(), half_extents(kind, p)
     width, height = readings.size_cm
     room_x = min(x - left, left + width - x) - wide
     room_y = min(y - top, top + height - y) - high
-    return bool(min(room_x, room_y) < -0.5 * pitch)
+    return float(min(room_x, room_y) / pitch)
 
 
 def half_extents(kind: int, p: Values) -> tuple[float, float]:

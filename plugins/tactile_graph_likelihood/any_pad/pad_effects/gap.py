@@ -135,6 +135,12 @@ def narrower(grid: Values, by_cm: float) -> Values:
     return found
 
 
+def without_gap(readings: Readings) -> Readings:
+    """Return readings on elements that leave no gap."""
+    grid = readings.grid
+    return readings._replace(grid=narrower(grid, float(grid[3] - grid[2])))
+
+
 def sized(model: Model, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
     """Return readings on elements as large as they tell, and the outline on them.
 

@@ -40,7 +40,7 @@ from tactile_graph_likelihood.any_pad.uncertainty.widened import (
     within,
 )
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE
-from tactile_graph_likelihood.single.any_pressure import EVEN, FOAM_ODDS, mixed
+from tactile_graph_likelihood.single.any_pressure import BOTH, EVEN, FOAM_ODDS, RISE, mixed
 from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.model import Likeliest
 from tactile_graph_likelihood.single.posterior import Posterior
@@ -49,9 +49,25 @@ from tactile_graph_likelihood.single.readings import Readings, is_row
 NEGLIGIBLE = 0.03
 """Probability over the likeliest pressure's below which one is left out."""
 
-PRESSED = {"lean": 0.8, "fall": 0.8, "foam": 2.8}
+PRESSED = {"lean": 0.8, "fall": 0.8, RISE: 0.8, "foam": 2.8}
+PRESSED |= {both: PRESSED[parts[0]] for both, parts in BOTH.items()}
 """Share that is added to the variance where a pressure of one or two numbers explains the load: no
 face presses quite like that, and foam shares gains that the fit takes for the outline's."""
+
+PROFILES, PROFILE_OFF = (RISE, *BOTH), 0.06
+"""Pressures with a rise or of two kinds, and of a pitch by how much lengths under them are off: no
+face presses quite like that, and what its fit leaves over is small."""
+
+LEAN_AND_FALL, LEANT = "lean and fall", 0.15
+"""Of a pitch: by how much more sizes are off of what leans and falls or rises to its rim."""
+
+RISEN, RISEN_FROM = 0.25, 1.2
+"""Of a pitch: by how much a face that rises to its rim in a way that no fit explains looks too
+large."""
+
+BLURRED = 0.6
+"""Of the width of foam: by how much a face that falls or rises to its rim under it, nobody knows
+how, is larger or smaller than an even one that looks like it."""
 
 RISES, LESS = -0.5, 0.3
 """Of how far a load falls to its rim, in standard deviations: it rises there if it is less; and the
@@ -118,6 +134,9 @@ class _Around:
         pressed = sum(share * self._wider(part) for part, share in shares.items())
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
         unseen = self._hidden(its) + readings.length_std_cm**2
+        if any(part in PROFILES for part in shares):
+            profiled = sum(shares.get(part, 0.0) for part in PROFILES) / sum(shares.values())
+            unseen += profiled * (PROFILE_OFF * float(readings.grid[2])) ** 2
         whole = on_any_pad(
             its,
             evidence,
@@ -129,6 +148,7 @@ class _Around:
             # Learned gains leave so little that what is always unseen would look vague.
             0.0 if self.fits.unevened is None else unseen,
         )
+        whole = unsized(self._cut_off(whole, shares), self._unended_cm(shares))
         if readings.filtered:
             whole = as_filtered(whole, float(readings.grid[2]))
         if readings.is_wide and readings.gap is not None and not readings.gap.is_told:
@@ -166,6 +186,36 @@ class _Around:
         if self.readings.through_foam is not None:
             its = changed(its, pressures=on_foam(its.pressures))
         return its
+
+    def _unended_cm(self, shares: Mapping[str, float]) -> float:
+        """Return the deviation of sizes where foam hides how a face ends, or a rise is left over.
+
+        Foam that was undone, or is told of, hides less.
+        """
+        best = self.tops[max(shares, key=shares.__getitem__)].fit
+        hidden = sum(shares.values()) * (RISEN * unseen_share(-best.fall - RISEN_FROM)) ** 2
+        for part, top in self.tops.items():
+            hidden += shares[part] * LEANT**2 if part == LEAN_AND_FALL else 0.0
+            if part.startswith(FOAM):
+                width = math.exp(top.mode.p[self.fits.n_even])
+                hidden += shares[part] * (BLURRED * width) ** 2
+        return float(self.readings.grid[2]) * math.sqrt(hidden / sum(shares.values()))
+
+    def _cut_off(self, whole: AnyPadPosterior, shares: Mapping[str, float]) -> AnyPadPosterior:
+        """Return a posterior that is wider towards where sides may lie beyond the pad's edge.
+
+        A sample of an even rectangle knows of these by itself.
+        """
+        kept = {part: share for part, share in shares.items() if share > NEGLIGIBLE}
+        if self.fits.told.kind == RECTANGLE and [*kept] == [EVEN] and not self.fits.quick:
+            return whole
+        covariance = whole.covariance
+        for part, share in kept.items():
+            beyond = self.fits.beyond(part, self.readings, self.tops[part])
+            if beyond is not None:
+                covariance = covariance.copy()
+                covariance[:6, :6] += share / sum(kept.values()) * beyond[:6, :6]
+        return changed(whole, covariance=covariance)
 
     def _missed(self) -> float:
         """Return how much what an even face's outline misses lies to a side, 0 where foam blurs it.

@@ -9,7 +9,8 @@ import numpy as np
 
 from tactile_graph.errors import Degenerate
 from tactile_graph_likelihood.any_pad.fits.left_open import fewness, is_scattered, looseness
-from tactile_graph_likelihood.any_pad.fits.localise import PRESSURES, AnyPad
+from tactile_graph_likelihood.any_pad.fits.localise import AnyPad
+from tactile_graph_likelihood.any_pad.fits.two_pressures import PARTS
 from tactile_graph_likelihood.any_pad.pad_effects.from_frame import (
     AS_LOADS,
     contrast_of,
@@ -19,7 +20,7 @@ from tactile_graph_likelihood.any_pad.pad_effects.from_frame import (
 )
 from tactile_graph_likelihood.any_pad.uncertainty.posterior import inflated
 from tactile_graph_likelihood.geometry.outlines import DISC, Values
-from tactile_graph_likelihood.single.any_pressure import EVEN
+from tactile_graph_likelihood.single.any_pressure import COUNTS, EVEN
 from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.climbs.maximise import Mode
 from tactile_graph_likelihood.single.density.element_terms import CONTRAST
@@ -57,8 +58,7 @@ class UnderPressure:
         if part == EVEN and self.fits.quick:
             its = told.normal_around(top, n + 1, self._pull(), row)
         else:
-            own = 0 if part == EVEN else len(PRESSURES[part])
-            its = told.normal_around(top, n + own, row=row)
+            its = told.normal_around(top, n + COUNTS.get(part, 0), row=row)
         return inflated(its, variance_inflation(top.fit.neighbours, self.readings.touched))
 
     def _pull(self) -> Values:
@@ -111,8 +111,8 @@ class UnderPressure:
             return model.posterior_around(readings, _first(top, 1 + n), loose)
         # Of few elements a point costs little, and the posterior is far from normal.
         precision = told.precision / (1.0 + FINER * fewness(readings))
-        estimated = "contrast" if by_law else part
-        noise = changed(noise, estimated=() if estimated == EVEN else (estimated,))
+        estimated = ("contrast",) if by_law else PARTS.get(part, (part,))
+        noise = changed(noise, estimated=estimated)
         model = changed(told, noise=noise, precision=precision)
         if by_law:
             begin = point[: n + 1].copy()
@@ -120,7 +120,7 @@ class UnderPressure:
             if is_scattered(told.kind, readings, point):
                 model = changed(model, most_points=FEW_POINTS)
             return model.posterior_near(readings, begin, loose)
-        return model.posterior_around(readings, _first(top, n + len(PRESSURES[part])), loose)
+        return model.posterior_around(readings, _first(top, n + COUNTS[part]), loose)
 
 
 def _first(top: Likeliest, count: int) -> Mode:

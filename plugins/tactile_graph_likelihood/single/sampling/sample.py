@@ -25,7 +25,7 @@ from tactile_graph_likelihood.geometry.outlines import (
 from tactile_graph_likelihood.geometry.oval import as_ellipse, log_stretch, to_oval
 from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole
 from tactile_graph_likelihood.single.climbs.maximise import ENOUGH, Mode, maximise
-from tactile_graph_likelihood.single.density.element_terms import ROOT_TWO_PI
+from tactile_graph_likelihood.single.density.element_terms import LEAN_X, ROOT_TWO_PI
 from tactile_graph_likelihood.single.density.evaluate import log_likelihood_at
 from tactile_graph_likelihood.single.density.goodness_of_fit import (
     NO_FIT,
@@ -53,6 +53,7 @@ factor."""
 SURE = 0.85  # probability from which on a side is looked for there: objects mostly lie whole
 WIDE = 0.2  # of the mean way squared, added to a proposal's variance: how far is unknown
 PROPOSALS = 8
+TINY = 1e-9  # cm: no difference of an oval's half axes
 FIRST = 1.6  # the first proposal's, over the inverse information: a gap lets an edge slide
 
 
@@ -176,7 +177,7 @@ def widen_to_other_ends(
     beyond = Beyond(p.copy(), np.zeros((n, n)), np.zeros((n, n)))
     if kind not in (RECTANGLE, ELLIPSE, OVAL):
         return beyond
-    move, unit, trial = np.zeros(5), np.zeros(5), p.copy()
+    move, unit, trial = np.zeros(n), np.zeros(n), p.copy()
     for side in range(4):
         place, shift, top = 0, SHIFTS[0], mode.height
         area = mean = square = 0.0
@@ -192,7 +193,7 @@ def widen_to_other_ends(
                 area += part
                 mean += part * shift
                 square += part * shift * shift
-            for k in range(5):
+            for k in range(n):
                 unit[k] = move[k] / shift
             place += 1
             shift = SHIFTS[place] if place < len(SHIFTS) else FARTHER * shift
@@ -203,9 +204,30 @@ def widen_to_other_ends(
                 _add_outer(beyond.slack, chance * square, unit)
             else:
                 _add_outer(beyond.wider, square - mean * mean + WIDE * mean * mean, unit)
-                for k in range(5):
+                for k in range(n):
                     beyond.point[k] += mean * unit[k]
     return beyond
+
+
+@compiled_as_is
+def beyond_the_pad(problem: Problem, p: Values, root: Values) -> Values:
+    """Return the covariance, shape (K, K), by which sides beyond the pad's edge widen a mode.
+
+    ``p`` and ``root`` are of a `Mode`; the covariance of an oval's is an `ELLIPSE`'s. For outlines
+    that are not wide.
+    """
+    near, n = turned_as(problem, p), p.shape[0]
+    mode = Mode(p, root, log_rest(near, p) + log_likelihood_at(near, None, p))
+    beyond = widen_to_other_ends(near, None, mode, np.zeros((n, n)))
+    found = beyond.slack + beyond.wider
+    _add_outer(found, 1.0, beyond.point - p)
+    if problem.kind == OVAL:
+        turn, d = np.eye(n), max(math.hypot(p[3], p[4]), TINY)
+        turn[2, 3], turn[2, 4] = p[3] / d, p[4] / d
+        turn[3, 2], turn[3, 3], turn[3, 4] = 1.0, -p[3] / d, -p[4] / d
+        turn[4, 3], turn[4, 4] = -0.5 * p[4] / (d * d), 0.5 * p[3] / (d * d)
+        found = turn @ found @ turn.T
+    return found
 
 
 @compiled_as_is
@@ -243,14 +265,36 @@ def _with_side_moved(
     trial[1] = at[1] - way * half * math.sin(turn)
     trial[2], trial[3] = at[2] + half * (1 - axis), at[3] + half * axis
     trial[4] = at[4]
+    _lean_on(problem, p, at, axis, way * half * (1 - 2 * axis), trial)
     if kind == OVAL:
         to_oval(trial)
-    for k in range(5):
+    for k in range(p.shape[0]):
         move[k] = trial[k] - p[k]
     here = log_rest(problem, trial)
     if here > -math.inf:
         here += log_likelihood_at(problem, whole, trial)
     return here
+
+
+@compiled_as_is
+def _lean_on(
+    problem: Problem, p: Values, at: Values, axis: int, shift_cm: float, trial: Values
+) -> None:
+    """Write load and lean of an outline that is moved along an axis, so that none change on it.
+
+    The load is that of the centre, and a lean goes over half the outline's extent.
+    """
+    for k in range(5, p.shape[0]):
+        trial[k] = p[k]
+    for k in range(problem.estimated.shape[0]):
+        if problem.estimated[k] != LEAN_X:
+            continue
+        cos, sin = math.cos(at[4]), math.sin(at[4])
+        leans = np.array([p[6 + k] * cos - p[7 + k] * sin, p[6 + k] * sin + p[7 + k] * cos])
+        trial[5] += leans[axis] * shift_cm / at[2 + axis]
+        leans[axis] *= trial[2 + axis] / at[2 + axis]
+        trial[6 + k] = leans[0] * cos + leans[1] * sin
+        trial[7 + k] = leans[1] * cos - leans[0] * sin
 
 
 @compiled_as_is
