@@ -253,7 +253,8 @@ class AnyPad:
         clearly likelier: such a rim looks as if it lay between elements.
         """
         found, its = sized(self._fit(EVEN), readings, even)
-        if readings.gap is None or RISE not in asked_by([even.fit], self._others, self._least):
+        rises = self.told.kind != RECTANGLE and even.fit.fall <= -self._least.rise
+        if readings.gap is None or not rises:
             return found, its
         bare = readings
         if not readings.gap.is_told:  # slivers that lie between elements hold such a fit fast

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from tactile_graph_likelihood.any_pad.fits.left_open import (
+    NO_FALL,
     PATTERN,
     UNSEEN,
     hidden_by,
@@ -134,7 +135,7 @@ class _Around:
         pressed = sum(share * self._wider(part) for part, share in shares.items())
         evidence = tops[EVEN].evidence + logs[best] - logs[EVEN]
         unseen = self._hidden(its) + readings.length_std_cm**2
-        if any(part in PROFILES for part in shares):
+        if len(shares) > 1 and any(part in PROFILES for part in shares):
             profiled = sum(shares.get(part, 0.0) for part in PROFILES) / sum(shares.values())
             unseen += profiled * (PROFILE_OFF * float(readings.grid[2])) ** 2
         whole = on_any_pad(
@@ -193,6 +194,8 @@ class _Around:
         Foam that was undone, or is told of, hides less.
         """
         best = self.tops[max(shares, key=shares.__getitem__)].fit
+        if len(self.tops) == 1 and best.fall >= -(RISEN_FROM + NO_FALL):
+            return 0.0
         hidden = sum(shares.values()) * (RISEN * unseen_share(-best.fall - RISEN_FROM)) ** 2
         for part, top in self.tops.items():
             hidden += shares[part] * LEANT**2 if part == LEAN_AND_FALL else 0.0
@@ -206,6 +209,8 @@ class _Around:
 
         A sample of an even rectangle knows of these by itself.
         """
+        if self.fits.told.kind == DISC:  # its arc tells of what is beyond
+            return whole
         kept = {part: share for part, share in shares.items() if share > NEGLIGIBLE}
         if self.fits.told.kind == RECTANGLE and [*kept] == [EVEN] and not self.fits.quick:
             return whole
@@ -215,7 +220,7 @@ class _Around:
             if beyond is not None:
                 covariance = covariance.copy()
                 covariance[:6, :6] += share / sum(kept.values()) * beyond[:6, :6]
-        return changed(whole, covariance=covariance)
+        return whole if covariance is whole.covariance else changed(whole, covariance=covariance)
 
     def _missed(self) -> float:
         """Return how much what an even face's outline misses lies to a side, 0 where foam blurs it.
