@@ -32,12 +32,24 @@ COMMANDS = {
 """Name -> what ``--help`` says; the command ``x`` is ``tactile_graph.cli.commands.x:x``."""
 
 
+def _version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
+    if asked and not ctx.resilient_parsing:
+        from tactile_graph.cli.say import say
+        from tactile_graph.code_version import code_version
+
+        say(f"tactile-graph, version {code_version()}")
+        ctx.exit()
+
+
 @click.group(
     cls=Group,
     built_in=COMMANDS,
     epilog=EXIT_CODES,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-@click.version_option(package_name="tactile-graph", prog_name="tactile-graph")
+@click.option(
+    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_version,
+    help="Show the version, with a digest of its code, and exit.",
+)  # fmt: skip
 def cli() -> None:
     """Tactile images through graphs of plugin steps that YAML files declare."""

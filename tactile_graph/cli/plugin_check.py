@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from tactile_graph.errors import TactileGraphError, UsageError, did_you_mean, one_of
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from tactile_graph.testing.plugin_check import PluginReport
 
 
-def show_checked(found: Registry, name: str) -> bool:
-    """Print what is wrong with a plugin, or with all of others; return whether nothing is.
+def show_checked(found: Registry, names: Sequence[str]) -> bool:
+    """Print what is wrong with plugins, without a name all of others; return whether nothing is.
 
     Raises
     ------
     UsageError
-        If there is no such plugin, or none of others.
+        If there is no plugin of a name, or none of others.
     """
     from tactile_graph.cli.terminal import console
     from tactile_graph.testing.apart import Apart
@@ -30,7 +30,7 @@ def show_checked(found: Registry, name: str) -> bool:
     out = console()
     right = True
     apart = Apart(found)
-    for plugin in _asked(found, name):
+    for plugin in _asked(found, names):
         with out.status(plugin.name) as status:
             told = lambda what: status.update(f"trying {what}")  # noqa: E731
             report = examine_plugin(plugin, found, told, apart.examine)
@@ -41,17 +41,17 @@ def show_checked(found: Registry, name: str) -> bool:
     return right
 
 
-def _asked(found: Registry, name: str) -> list[Plugin]:
-    if name:
-        asked = [p for p in found.plugins if p.name == name or p.package == name]
-        if not asked:
-            names = [p.name for p in found.plugins]
-            hint = did_you_mean(name, names) or f"; there are: {one_of(names, 20)}"
+def _asked(found: Registry, names: Sequence[str]) -> list[Plugin]:
+    known = [p.name for p in found.plugins]
+    for name in names:
+        if name not in (*known, *(p.package for p in found.plugins)):
+            hint = did_you_mean(name, known) or f"; there are: {one_of(known, 20)}"
             raise UsageError(f"no plugin named {name!r}{hint}")
-        return [p for p in asked if not p.blocked]
+    if names:
+        return [p for p in found.plugins if {p.name, p.package} & {*names} and not p.blocked]
     others = [p for p in found.plugins if p.package != OWN and not p.blocked]
     if not others:
-        own = one_of([p.name for p in found.plugins], 20)
+        own = one_of(known, 20)
         raise UsageError(f"no plugin of others is installed; --check NAME takes one of: {own}")
     return others
 

@@ -15,6 +15,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PUBLIC = (
     "tactile_graph",
+    "tactile_graph.code_version",
     "tactile_graph.wires",
     "tactile_graph.steps",
     "tactile_graph.docstring",

@@ -270,9 +270,9 @@ def _observe(
 
 
 def _made_by() -> str:
-    from importlib.metadata import version
+    from tactile_graph.code_version import code_version
 
-    return f"tactile-graph {version('tactile-graph')}"
+    return f"tactile-graph {code_version()}"
 
 
 def _now() -> str:

@@ -131,15 +131,15 @@ def _read(
 
 def _making(stacks: Sequence[Stack | None], pad_name: str) -> Making:
     from datetime import UTC, datetime
-    from importlib.metadata import version
 
+    from tactile_graph.code_version import code_version
     from tactile_graph.foreign_text import pasted_words
     from tactile_graph_pads.learning.pad_file import Making
 
     digests = {name: d for s in stacks if s is not None for name, d in s.digests.items()}
     return Making(
         pasted_words(["tactile-graph", *sys.argv[1:]]),
-        f"tactile-graph {version('tactile-graph')}",
+        f"tactile-graph {code_version()}",
         datetime.now(UTC).isoformat(timespec="seconds"),
         digests,
         pad_name,

@@ -158,6 +158,15 @@ def _tell(looked: Looked, settings: Sequence[str]) -> None:
         say(f"  one sensor alone: add --with sensor={pasted(labels[0])}")
     if looked.pitch_assumed:
         say("  where the pitch is known, add --with pitch_cm=…: lengths are wrong without")
+    elif _may_be_of_nobody(looked, settings):
+        say("  a pitch of 1 x 1 cm stands, too, where older versions wrote what nobody had said:")
+        say("  if it is of those, add --with pitch_cm=…: lengths are wrong without")
+
+
+def _may_be_of_nobody(looked: Looked, settings: Sequence[str]) -> bool:
+    """Return whether a recording's pitch may be one that an older version had assumed."""
+    told = any(setting.partition("=")[0].strip() == "pitch_cm" for setting in settings)
+    return not told and looked.sensors[0].frames[0].image.pitch_cm == (1.0, 1.0)
 
 
 def _offset_told(looked: Looked) -> Iterator[str]:

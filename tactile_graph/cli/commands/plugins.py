@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from tactile_graph.cli.endings import NOT_DONE
-from tactile_graph.errors import TactileGraphError
+from tactile_graph.errors import TactileGraphError, UsageError
 from tactile_graph.plugins import registry
 from tactile_graph.plugins.mistakes import near_groups
 from tactile_graph.plugins.names import OWN, Plugin, singular
@@ -23,16 +23,21 @@ NARROW = 80
 @click.option(
     "--check", "checked", metavar="[NAME]", is_flag=False, flag_value=EVERY, default=None,
     help="Import all that a plugin offers, try its steps on some thirty frames from ordinary to "
-    "absurd, and tell what is wrong, a line each. Without a name, of every plugin of others.",
+    "absurd, and tell what is wrong, a line each. More names may follow; without one, of every "
+    "plugin of others.",
 )  # fmt: skip
-def plugins(checked: str | None) -> None:
+@click.argument("more", metavar="[NAME]...", nargs=-1)
+def plugins(checked: str | None, more: tuple[str, ...]) -> None:
     """List the plugins: package, version, import time, what they offer, what is wrong."""
     if checked is not None:
         from tactile_graph.cli.plugin_check import show_checked
 
-        if not show_checked(registry.installed(), "" if checked == EVERY else checked):
+        names = [name for name in (checked, *more) if name != EVERY]
+        if not show_checked(registry.installed(), names):
             click.get_current_context().exit(NOT_DONE)
         return
+    if more:
+        raise UsageError(f"{more[0]}: names are for --check: tactile-graph plugins --check NAME")
     _list()
 
 

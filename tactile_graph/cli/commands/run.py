@@ -221,10 +221,13 @@ class _Run:
     """Whether an error ended the frames."""
     compiling: int | None = None
     """The process that still compiles when the frames are done."""
+    made_of: dict[str, str] = field(default_factory=dict)
+    """What the output hangs on, where it may be resumed."""
 
     def divided(self, workers: int | None, on: str | None, resume: bool) -> None:
         """Let workers run it, and leave the command; say why if they cannot."""
-        from tactile_graph.cli.many.many_run import Asked, InOneRow, ManyRun, division_for
+        from tactile_graph.cli.many.finished import is_done, refuse_other
+        from tactile_graph.cli.many.many_run import Asked, InOneRow, ManyRun, division_for, hangs_on
         from tactile_graph.cli.many.options import BY_RECORDING, place_asked
         from tactile_graph.cli.terminal import console
 
@@ -235,14 +238,20 @@ class _Run:
             self.pipeline, self.only, self.span, self.seed, self.output, self.verify, place, resume
         )
         division, ranges = division_for(asked)
+        self.made_of = hangs_on(asked, division)
         say = console(stderr=True)
+        if resume and is_done(self.pipeline, self.output, self.made_of):
+            say.print(f"{self.output.name}: is done already", style="dim")
+            click.get_current_context().exit(0)
         if division.why_not:
+            if resume:
+                refuse_other(self.output, self.made_of)
             say.print(f"in one process: {division.why_not}", style="yellow", soft_wrap=True)
             return
         if division.by_recording:
             say.print(BY_RECORDING, style="yellow", soft_wrap=True)
         try:
-            code = ManyRun(asked, division, ranges).go()
+            code = ManyRun(asked, division, ranges, self.made_of).go()
         except InOneRow as why:
             say.print(f"in one process: {why}", style="yellow", soft_wrap=True)
             return
@@ -496,11 +505,17 @@ class _Run:
         name = self._lies_at()
         if name in (None, "-") or not (is_plain(str(name)) or Path(str(name)).is_dir()):
             return  # nothing stands beside a pipe or a device
+        resumed: dict[str, Any] = {}
+        if self.made_of:
+            from tactile_graph.cli.many.finished import n_bytes
+
+            resumed = {"made_of": self.made_of, "bytes": n_bytes(str(name))}
         data = provenance(
             self.pipeline, self.seed, self.report,
             command=["tactile-graph", *sys.argv[1:]], complete=complete,
             asked=list(self.asked), columns=self._units(),
             frames={"from": self.span.start, "to": self.span.stop}, result=self.tally.data(),
+            **resumed,
         )  # fmt: skip
         write_provenance(str(name), data)
 

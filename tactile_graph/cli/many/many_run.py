@@ -5,15 +5,15 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from tactile_graph.api.pipeline import Pipeline
 from tactile_graph.cli.arguments import Span
 from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
+from tactile_graph.cli.many.finished import refuse_other, stays
 from tactile_graph.cli.many.job import Done, Job, done, for_workers
-from tactile_graph.cli.many.made_of import changed, device, made_of
+from tactile_graph.cli.many.made_of import changed, made_of
 from tactile_graph.cli.many.unfinished import Unfinished
 from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.progress import Bar
@@ -36,7 +36,7 @@ from tactile_graph.many.in_order import InOrder
 from tactile_graph.many.portion import Portion, packed
 from tactile_graph.many.reading import Reading
 from tactile_graph.many.sharing import KILLER
-from tactile_graph.provenance import provenance, sidecar, write_provenance
+from tactile_graph.provenance import provenance, write_provenance
 from tactile_graph.steps.injected import Report
 from tactile_graph.steps.ranges import Ranges
 
@@ -75,6 +75,18 @@ def division_for(asked: Asked) -> tuple[Division, Ranges | None]:
     return led_to(asked.span.start, division), ranges
 
 
+def hangs_on(asked: Asked, division: Division) -> dict[str, str]:
+    """Return digests of all that the output hangs on; none where no output stays."""
+    output, span = asked.output, [asked.span.start, asked.span.stop]
+    if not stays(output.name):
+        return {}
+    options = {
+        "asked": asked.outputs, "seed": asked.seed, "span": span, "form": output.ending,
+        "full": output.full, "long": output.long, "memory": division.by_recording,
+    }  # fmt: skip
+    return made_of(asked.pipeline, options)
+
+
 @dataclass
 class ManyRun:
     """One run: portions of frames to workers, what they come to into one file."""
@@ -82,6 +94,7 @@ class ManyRun:
     asked: Asked
     division: Division
     ranges: Ranges | None
+    of: Mapping[str, str]
     interrupted: KeyboardInterrupt | None = None
     error: Exception | None = None
     left_out: list[int] = field(default_factory=list)
@@ -114,12 +127,6 @@ class ManyRun:
         self.n_kept = 0
         name = asked.output.name
         self.unfinished = Unfinished(name) if Unfinished.possible(name) else None
-        self._of = made_of(asked.pipeline, self._options()) if self.unfinished else {}
-        if asked.resume and self._is_done():
-            if self.unfinished is not None:
-                self.unfinished.clear()
-            self.people.print(f"{name}: is done already", style="dim")
-            return 0
         self._begin()
         with Interrupts() as interrupts:
             try:
@@ -131,37 +138,17 @@ class ManyRun:
 
     # -- what was done before ------------------------------------------------------------------
 
-    def _options(self) -> dict[str, Any]:
-        asked = self.asked
-        output = asked.output
-        span = [asked.span.start, asked.span.stop]
-        return {
-            "asked": asked.outputs, "seed": asked.seed, "span": span, "form": output.ending,
-            "full": output.full, "long": output.long, "memory": self.division.by_recording,
-        }  # fmt: skip
-
-    def _is_done(self) -> bool:
-        """Return whether the output stands there, whole, made of the same."""
-        import json
-
-        name = self.asked.output.name
-        try:
-            data = json.loads(sidecar(name).read_bytes())
-            return bool(data["made_of"] == self._of and data["bytes"] == Path(name).stat().st_size)
-        except (OSError, ValueError, KeyError, TypeError, RecursionError):
-            return False
-
     def _begin(self) -> None:
         """Begin anew, or find where an earlier run ended."""
-        if self.asked.resume:
-            self._refuse_what_cannot_go_on()
         if self.unfinished is None:
             return
         before = self.unfinished.read() if self.asked.resume else None
         if before is None:
-            self.unfinished.begin(self._of)
+            if self.asked.resume:
+                refuse_other(self.asked.output, self.of)
+            self.unfinished.begin(self.of)
             return
-        other = changed(before, self._of)
+        other = changed(before, self.of)
         if other:
             self.unfinished.close()
             raise UsageError(
@@ -170,13 +157,6 @@ class ManyRun:
             )
         if self.unfinished.high is not None and self.unfinished.so_far is not None:
             self._go_on(self.unfinished.high, self.unfinished.so_far)
-
-    def _refuse_what_cannot_go_on(self) -> None:
-        if self.unfinished is None:
-            raise UsageError(f"--resume: what went to {self.asked.output.name} is not known")
-        port = device(self.asked.pipeline)
-        if port:
-            raise UsageError(f"--resume: {port} gives its frames only once")
 
     def _go_on(self, high: int, so_far: Mapping[str, Any]) -> None:
         self.low = high
@@ -366,6 +346,6 @@ class ManyRun:
             command=["tactile-graph", *sys.argv[1:]], complete=True,
             asked=list(asked.outputs), columns=units,
             frames={"from": asked.span.start, "to": asked.span.stop}, result=self.tally.data(),
-            made_of=self._of, bytes=self.n_bytes,
+            made_of=self.of, bytes=self.n_bytes,
         )  # fmt: skip
         write_provenance(asked.output.name, data)

@@ -8,13 +8,13 @@ import shutil
 import subprocess
 import sys
 import types
-from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 
 from helpers_cli import broken_plugin, call, install
 from tactile_graph.cli.app import COMMANDS
+from tactile_graph.code_version import code_version
 from tactile_graph.plugins import registry
 
 COMMAND = '''
@@ -145,7 +145,7 @@ def test_without_a_command_the_help_says_what_there_is():
 
 
 def test_version():
-    assert call("--version").stdout == f"tactile-graph, version {version('tactile-graph')}\n"
+    assert call("--version").stdout == f"tactile-graph, version {code_version()}\n"
 
 
 @pytest.mark.parametrize("args", [["--help"], ["run", "--help"]])

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from helpers_cli import call, install, made, pressed, recording
+from tactile_graph.testing.plugin_check import PluginReport
 
 CODE = """\
 import click
@@ -76,3 +77,30 @@ def test_a_reader_that_cannot_read_is_told(
     assert code == 2
     assert message in told
     assert checked(hand_made, monkeypatch, readers={"recording": "path"})[0] == 0
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (("--check", "pads", "hull"), ["hull", "pads"]),
+    (("hull", "--check"), ["hull"]),
+    (("--check=hull", "hull"), ["hull"]),
+])  # fmt: skip
+def test_several_plugins_are_checked_at_once(
+    monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], said: list[str]
+) -> None:
+    # What is wrong with each is told elsewhere; here only which ones are looked at.
+    monkeypatch.setattr(
+        "tactile_graph.testing.plugin_check.examine_plugin",
+        lambda plugin, *_: PluginReport(plugin),
+    )
+    got = call("plugins", *words)
+    assert got.exit_code == 0
+    assert [line.split()[0] for line in got.stdout.splitlines()] == said
+
+
+def test_a_second_name_that_is_none_is_told_and_names_alone_are_refused() -> None:
+    got = call("plugins", "--check", "pads", "hul")
+    assert (got.exit_code, got.stdout) == (2, "")
+    assert "no plugin named 'hul'; did you mean 'hull'?" in got.stderr
+    got = call("plugins", "hull")
+    assert got.exit_code == 2
+    assert "hull: names are for --check: tactile-graph plugins --check NAME" in got.stderr

@@ -80,7 +80,7 @@ def test_a_step_that_ends_its_process_or_never_returns_costs_its_own_trial(
     monkeypatch.setattr(apart, "GRACE_S", 0.0)
     monkeypatch.setattr(apart, "IDLE", 0.4)
     start_s = time.monotonic()
-    assert not show_checked(found, "rough")
+    assert not show_checked(found, ["rough"])
     assert time.monotonic() - start_s < 60.0
     case = "an image without cells"
     assert capsys.readouterr().out.splitlines() == [

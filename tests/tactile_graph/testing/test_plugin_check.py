@@ -132,12 +132,12 @@ def test_the_shell_shows_what_is_wrong_and_what_is_right(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     registry = registry_of(offering(steps={"counted": counted, "shaky": shaky, "needy": needy}))
-    assert not show_checked(registry, "mine")
+    assert not show_checked(registry, ["mine"])
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "mine (my-package 1.2): 1 broken"
     assert lines[1].startswith("  step 'shaky': an image without cells")
     assert lines[2].startswith("  step 'needy' was not tried: setting 'level' is missing")
-    assert show_checked(registry_of(offering(steps={"counted": counted})), "")
+    assert show_checked(registry_of(offering(steps={"counted": counted})), [])
     assert capsys.readouterr().out == "mine (my-package 1.2): right  1 offer\n"
 
 
@@ -145,7 +145,7 @@ def test_of_a_tuple_without_names_it_is_told_what_names_would_give(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     registry = registry_of(offering(steps={"corner": corner, "counts": counts}))
-    assert show_checked(registry, "mine")
+    assert show_checked(registry, ["mine"])
     first, advice = capsys.readouterr().out.splitlines()
     assert first == "mine (my-package 1.2): right  2 offers"
     assert advice.startswith("  step 'corner' gives tuple[int, float], of which tables only show ")
@@ -155,6 +155,6 @@ def test_of_a_tuple_without_names_it_is_told_what_names_would_give(
 def test_an_unknown_plugin_and_none_at_all_are_told() -> None:
     registry = Registry([("hull", "tactile-graph", "1", lambda: offering(steps={}))])
     with pytest.raises(UsageError, match="no plugin named 'hul'; did you mean 'hull'"):
-        show_checked(registry, "hul")
+        show_checked(registry, ["hul"])
     with pytest.raises(UsageError, match="no plugin of others is installed; --check NAME takes"):
-        show_checked(registry, "")
+        show_checked(registry, [])

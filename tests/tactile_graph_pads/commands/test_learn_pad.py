@@ -16,6 +16,7 @@ from helpers_panel import panel_frames
 from helpers_recordings import SHARED, shared
 from tactile_graph import Frame, loads
 from tactile_graph.cli import cli
+from tactile_graph.code_version import code_version
 from tactile_graph.errors import DataError, UsageError
 from tactile_graph_pads.commands.learn_pad import learn_pad
 from tactile_graph_pads.pad import load_pad
@@ -39,6 +40,7 @@ def test_an_empty_recording_alone_makes_a_pad_with_noise_and_offset(tmp_path: Pa
     assert learned.pitch_cm == (0.5, 0.8)
     assert learned.table.good.all()
     assert "No objects were recorded" in said
+    assert f"# Made by tactile-graph {code_version()} on 2" in out.read_text("utf-8")
 
 
 @pytest.mark.slow

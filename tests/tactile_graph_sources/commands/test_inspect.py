@@ -93,6 +93,21 @@ def test_it_measures_what_the_film_was_made_with(mat: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("nothing_tried")
+@pytest.mark.parametrize(("pitch_cm", "more", "doubted"), [
+    (1.0, (), True), (1.0, ("--with", "pitch_cm=1"), False), (0.8, (), False),
+])  # fmt: skip
+def test_a_pitch_that_older_versions_wrote_where_nobody_said_it_is_doubted(
+    tmp_path: Path, pitch_cm: float, more: tuple[str, ...], doubted: bool
+) -> None:
+    frame = Frame.of(RNG.normal(0, 1.5, (4, 5)), pitch_cm, quantity="counts")
+    write_npz(tmp_path / "old.npz", [frame])
+    said = run(tmp_path / "old.npz", *more)
+    assert ("stands, too, where older versions wrote what nobody had said" in said) == doubted
+    assert ("add --with pitch_cm=…" in said) == doubted
+
+
+@pytest.mark.slow
 def test_what_lies_there_from_first_to_last_is_a_contact_and_not_how_the_pad_rests(
     tmp_path: Path,
 ) -> None:
