@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
-from scipy.spatial import ConvexHull
+
+from tactile_graph_classifiers.measuring.hull import hull_corners
 
 Array = NDArray[np.float64]
 DIRECTIONS = np.exp(1j * np.linspace(0.0, math.pi, 36, endpoint=False))
@@ -49,11 +50,11 @@ def outline_numbers(on: NDArray[np.bool_], pitch_cm: tuple[float, float]) -> lis
     y, x = np.nonzero(on)
     z = x * px + 1j * (y * py)
     area, cell = z.size * px * py, (px * px + py * py) / 12.0
-    hull = _hull(on, px, py)
+    wider = bordered(on)
+    hull = np.asarray(hull_corners.call(wider) @ (px, 1j * py), np.complex128)
     extents = np.ptp((hull[:, None] * DIRECTIONS.conj()).real, axis=0)
     hull_cm2 = _area(hull)
     parts, n_parts = ndimage.label(on, np.ones((3, 3)))
-    wider = bordered(on)
     inside = ndimage.distance_transform_edt(wider, sampling=(py, px))[1:-1, 1:-1][on]
     z -= z.mean()
     far = np.abs(z)
@@ -116,16 +117,6 @@ def bordered(values: NDArray[Any]) -> NDArray[Any]:
     return out
 
 
-def _hull(on: NDArray[np.bool_], px: float, py: float) -> NDArray[np.complex128]:
-    """Return the corners of the convex hull of all cells, in order."""
-    rows = np.flatnonzero(on.any(axis=1))
-    first, last = on[rows].argmax(axis=1), on.shape[1] - 1 - on[rows, ::-1].argmax(axis=1)
-    ends = np.concatenate([first - 0.5, last + 0.5] * 2) * px
-    heights = np.concatenate([rows - 0.5] * 2 + [rows + 0.5] * 2) * py
-    points = np.column_stack([ends, heights])
-    corners = points[ConvexHull(points).vertices]
-    return np.asarray(corners[:, 0] + 1j * corners[:, 1])
-
-
 def _area(corners: NDArray[np.complex128]) -> float:
-    return 0.5 * abs(float((corners.conj() * np.roll(corners, -1)).imag.sum()))
+    following = np.concatenate([corners[1:], corners[:1]])
+    return 0.5 * abs(float((corners.conj() * following).imag.sum()))
