@@ -46,9 +46,10 @@ from pressed_objects import INSTRUMENTS, Pad, Thing, catalogue
 from tactile_graph import Frame, load
 from tactile_graph_classifiers.database.opening import load_known
 from tactile_graph_classifiers.database.text import FORMAT, VERSION
-from tactile_graph_classifiers.distances.choosing import Examples, choose
+from tactile_graph_classifiers.distances.choosing import choose
 from tactile_graph_classifiers.distances.discriminant import CanonicalDiscriminant
 from tactile_graph_classifiers.distances.discriminant_model import Learned
+from tactile_graph_classifiers.distances.examples import Examples
 from tactile_graph_classifiers.distances.mahalanobis import Mahalanobis
 from tactile_graph_classifiers.measuring.describe import NAMES
 from tactile_graph_classifiers.measuring.features import NAMES as FEATURES

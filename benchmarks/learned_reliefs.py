@@ -34,7 +34,8 @@ from tactile_graph.compiled import warm_up
 from tactile_graph_classifiers.commands.learn import image_of
 from tactile_graph_classifiers.database.rows import Lesson, Setting
 from tactile_graph_classifiers.database.store import ObjectDatabase
-from tactile_graph_classifiers.distances.choosing import Examples, choose
+from tactile_graph_classifiers.distances.choosing import choose
+from tactile_graph_classifiers.distances.examples import Examples
 from tactile_graph_classifiers.distances.identity import Identity
 from tactile_graph_classifiers.measuring.reader import Given, Reader
 from tactile_graph_classifiers.reliefs.of_database import learned_of

@@ -17,7 +17,8 @@ from tactile_graph_classifiers.commands.learn import image_of
 from tactile_graph_classifiers.database.opening import RELIEFS
 from tactile_graph_classifiers.database.rows import Lesson, Setting
 from tactile_graph_classifiers.database.store import ObjectDatabase
-from tactile_graph_classifiers.distances.choosing import Examples, choose
+from tactile_graph_classifiers.distances.choosing import choose
+from tactile_graph_classifiers.distances.examples import Examples
 from tactile_graph_classifiers.measuring.reader import Given, Reader
 from tactile_graph_classifiers.measuring.shapes import true_name
 from tactile_graph_classifiers.reliefs.of_database import learned_of

@@ -26,7 +26,8 @@ from tactile_graph_classifiers.database.opening import load_known
 from tactile_graph_classifiers.database.rows import Lesson, Setting
 from tactile_graph_classifiers.database.store import ObjectDatabase
 from tactile_graph_classifiers.database.text import to_text
-from tactile_graph_classifiers.distances.choosing import Examples, choose
+from tactile_graph_classifiers.distances.choosing import choose
+from tactile_graph_classifiers.distances.examples import Examples
 
 FEATURES = ("weight", "area_cm2", "axis_ratio", "holes")
 BLOCK = 512

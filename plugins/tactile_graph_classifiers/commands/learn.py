@@ -145,7 +145,8 @@ def _letters(name: str) -> str:
 
 def _alike(known: Known, name: str, other: str) -> str:
     """Return how often readings of two objects are taken for the other when left out, in words."""
-    from tactile_graph_classifiers.distances.choosing import Examples, left_out_names
+    from tactile_graph_classifiers.distances.choosing import left_out_names
+    from tactile_graph_classifiers.distances.examples import Examples
 
     if known.choice is None:
         return ""

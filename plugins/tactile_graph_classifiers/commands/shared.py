@@ -51,7 +51,8 @@ def tell_apart(store: ObjectDatabase) -> None:
     ----------
     store : ObjectDatabase
     """
-    from tactile_graph_classifiers.distances.choosing import Examples, choose
+    from tactile_graph_classifiers.distances.choosing import choose
+    from tactile_graph_classifiers.distances.examples import Examples
     from tactile_graph_classifiers.distances.left_out_recordings import by_recording
 
     known = store.known()

@@ -12,6 +12,10 @@ RESOLUTION = 1e-3
 """Share of a feature's deviation over all readings below which a spread is not believed."""
 ROUNDING = 1e-12
 """Share of a feature's size below which its deviation is that of rounding."""
+SMALL = 200_000
+"""So many multiplications OpenBLAS leaves to one thread: its own limit is 262,144."""
+FEW_ROWS = 24
+"""A matrix of no more is inverted as a whole."""
 
 
 class WithLogarithms(NamedTuple):
@@ -80,13 +84,57 @@ class Space(NamedTuple):
         floor = np.where(varies, RESOLUTION * total, np.maximum(1.0, np.abs(rows[0])))
         scale = np.maximum(np.sqrt((off * off).sum(axis=0) / freedom), floor)
         off = off / scale
-        covariance = (1.0 - shrinkage) / freedom * (off.T @ off)
+        covariance = (1.0 - shrinkage) / freedom * product(off.T, off)
         covariance[np.diag_indices_from(covariance)] += shrinkage
-        root = np.linalg.cholesky(covariance)
-        whitening = solved(root, np.diag(1.0 / scale)).T
+        whitening = (inverse_root(covariance) / scale).T
         middle = means @ whitening
         _, sizes, variates = np.linalg.svd(middle - middle.mean(axis=0), full_matrices=False)
         return cls(whitening, variates[sizes > 1e-9 * max(float(sizes[0]), 1e-300)].T)
+
+
+def product(left: Array, right: Array) -> Array:
+    """Return ``left @ right``, made in pieces that BLAS leaves to one thread each.
+
+    Threads of OpenBLAS that are done with their share keep their cores busy with waiting for the
+    next, and where others need these cores all wait for each other: many times the work itself.
+
+    Parameters
+    ----------
+    left : ndarray, shape (m, k)
+    right : ndarray, shape (k, n)
+    """
+    m, k, n = *left.shape, right.shape[1]
+    if m * k * n <= SMALL or n > SMALL:
+        return np.asarray(left @ right)
+    rows = min(m, max(1, SMALL // (n * min(k, 32))))
+    step = max(1, SMALL // (n * rows))
+    out = np.zeros((m, n))
+    for i in range(0, m, rows):
+        for j in range(0, k, step):
+            out[i : i + rows] += left[i : i + rows, j : j + step] @ right[j : j + step]
+    return out
+
+
+def inverse_root(matrix: Array) -> Array:
+    """Return the inverse of the lower triangular root of a positive matrix, half by half.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (T, T)
+        Symmetric.
+    """
+    n = len(matrix)
+    if n <= FEW_ROWS:
+        root = np.asarray(np.linalg.cholesky(matrix), np.float64)
+        return solved(root, np.eye(n))
+    h = n // 2
+    first = inverse_root(matrix[:h, :h])
+    beside = product(first, matrix[:h, h:])
+    last = inverse_root(matrix[h:, h:] - product(beside.T, beside))
+    out = np.zeros((n, n))
+    out[:h, :h], out[h:, h:] = first, last
+    out[h:, :h] = -product(product(last, beside.T), first)
+    return out
 
 
 def solved(root: Array, wanted: Array) -> Array:
@@ -111,4 +159,4 @@ def solved(root: Array, wanted: Array) -> Array:
 def means_of(rows: Array, labels: NDArray[np.intp]) -> Array:
     """Return the mean of each object's rows, shape (K, T)."""
     belongs = (labels == np.arange(int(labels.max()) + 1)[:, None]).astype(np.float64)
-    return np.asarray(belongs @ rows / np.bincount(labels)[:, None])
+    return product(belongs, rows) / np.bincount(labels)[:, None]

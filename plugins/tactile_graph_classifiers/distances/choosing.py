@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import lru_cache
 from itertools import product
 from typing import NamedTuple
@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 from scipy.special import logsumexp
 
-from tactile_graph.errors import DataError
 from tactile_graph_classifiers.database.choice import CONFIDENCE, Choice, Manner
-from tactile_graph_classifiers.database.known import Known
 from tactile_graph_classifiers.distances.discriminant_model import Labels, Learned, Scores
+from tactile_graph_classifiers.distances.examples import Examples, Packed, runs_of
 from tactile_graph_classifiers.distances.left_out import largest_accepted
 
 Array = NDArray[np.float64]
@@ -24,8 +23,6 @@ SHRINKAGES = (0.3, 0.1, 0.03, 0.01)
 VARIATES = (8, 15, 25)
 PRIORS = (60.0, 16.0, 5.0)
 BEYOND = (1.0, 0.3, 0.1, 0.03, 0.0)
-RUNS = 10
-"""Into how many runs of successive readings an object's are cut."""
 PIECES = 20
 """Of so many pieces one is left out at a time to learn what is accepted: of a smaller part of the
 readings less is learned, and it would seem that known objects vary more than they do."""
@@ -35,64 +32,6 @@ HOTTEST = 1e4
 BY_CHANCE = 2.0
 """Logarithms of likelihood that a temperature gains in one of twenty times where none is needed:
 half the 95 % quantile of chi squared."""
-
-
-class Examples(NamedTuple):
-    """All readings of known objects.
-
-    Parameters
-    ----------
-    readings : ndarray, shape (n, F)
-    labels : ndarray of int, shape (n,)
-        Which object each is of.
-    runs : ndarray of int, shape (n,)
-        Which run of its object's readings; -1 where an object has only one reading.
-    """
-
-    readings: Array
-    labels: Labels
-    runs: Labels
-
-    @classmethod
-    def of(cls, known: Known) -> Examples:
-        """Return the readings of all objects.
-
-        Raises
-        ------
-        DataError
-            If no object has two readings, or one none.
-        """
-        counts = [len(it.readings) for it in known.objects]
-        if min(counts) < 1:
-            raise DataError(known.where, f"{known.names[counts.index(0)]!r} has no readings")
-        if max(counts) < 2:
-            raise known.nothing_varies()
-        labels = np.repeat(np.arange(len(counts)), counts)
-        return cls(np.concatenate([o.readings for o in known.objects]), labels,
-                   _runs(counts, 1))  # fmt: skip
-
-    def chosen(self, kept: NDArray[np.bool_]) -> Examples:
-        """Return those kept, the objects numbered anew."""
-        _, labels = np.unique(self.labels[kept], return_inverse=True)
-        return Examples(self.readings[kept], labels.astype(np.intp), self.runs[kept])
-
-    def most_presses(self) -> int:
-        """Return how many presses of one object can be judged together by what was learned.
-
-        So many that most objects, some of their readings left out, keep three quarters.
-        """
-        counts = np.bincount(self.labels)
-        return max(1, int(np.median(counts[counts > 1])) // 4)
-
-
-def _runs(counts: Sequence[int], n_presses: int) -> Labels:
-    """Return which run of its object's each reading is in; -1 where there are no two runs."""
-    numbers = [min(RUNS, n // n_presses) for n in counts]
-    runs = [
-        np.arange(n) * of // n if of > 1 else np.full(n, -1)
-        for n, of in zip(counts, numbers, strict=True)
-    ]
-    return np.concatenate(runs).astype(np.intp)
 
 
 class Tried(NamedTuple):
@@ -137,14 +76,12 @@ def choose_once(examples: Examples) -> Choice:
     ----------
     examples : Examples
     """
-    return _chosen(*[(part.dtype.str, part.shape, part.tobytes()) for part in examples])
+    return _chosen(*examples.packed())
 
 
 @lru_cache(maxsize=8)
-def _chosen(*parts: tuple[str, tuple[int, ...], bytes]) -> Choice:
-    return choose(
-        Examples(*[np.frombuffer(raw, dtype).reshape(shape) for dtype, shape, raw in parts])
-    )
+def _chosen(*parts: Packed) -> Choice:
+    return choose(Examples.unpacked(parts))
 
 
 def choose(examples: Examples) -> Choice:
@@ -230,6 +167,23 @@ class NamedLeftOut(NamedTuple):
         return math.exp(best.x) if surprise(0.0) - best.fun > BY_CHANCE else 1.0
 
 
+def name_once(examples: Examples, manner: Manner, n_presses: int) -> NamedLeftOut:
+    """Return what `name_left_out` does; of the same at once, as `choose_once` does.
+
+    Parameters
+    ----------
+    examples : Examples
+    manner : Manner
+    n_presses : int
+    """
+    return _named(manner, n_presses, *examples.packed())
+
+
+@lru_cache(maxsize=8)
+def _named(manner: Manner, n_presses: int, *parts: Packed) -> NamedLeftOut:
+    return name_left_out(Examples.unpacked(parts), manner, n_presses)
+
+
 def name_left_out(examples: Examples, manner: Manner, n_presses: int = 1) -> NamedLeftOut:
     """Return what was left out, named by the rest of the readings.
 
@@ -240,7 +194,7 @@ def name_left_out(examples: Examples, manner: Manner, n_presses: int = 1) -> Nam
     n_presses : int
         So many successive readings of an object are named together by their mean.
     """
-    runs = _runs(np.bincount(examples.labels).tolist(), n_presses)
+    runs = runs_of(np.bincount(examples.labels).tolist(), n_presses)
     n_runs = int(runs.max()) + 1
     n_groups = math.ceil(PIECES / max(n_runs, 1))
     pieces = np.where(runs < 0, -1, runs + n_runs * (examples.labels % n_groups))

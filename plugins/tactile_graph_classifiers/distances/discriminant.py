@@ -13,9 +13,10 @@ from annotated_types import Gt, Lt, MinLen
 
 from tactile_graph.errors import DataError
 from tactile_graph_classifiers.database.choice import CONFIDENCE
-from tactile_graph_classifiers.distances.choosing import Examples, choose_once, name_left_out
+from tactile_graph_classifiers.distances.choosing import choose_once, name_once
 from tactile_graph_classifiers.distances.classifier import Lookup
 from tactile_graph_classifiers.distances.discriminant_model import Learned
+from tactile_graph_classifiers.distances.examples import Examples
 from tactile_graph_classifiers.distances.identity import UNKNOWN, Identity
 from tactile_graph_classifiers.distances.left_out import largest_accepted
 from tactile_graph_classifiers.measuring.measurements import Measurements
@@ -130,7 +131,7 @@ class CanonicalDiscriminant:
         press, over the median of one press times theirs. Nor are they ever surer than one press.
         """
         if n_presses not in self._accepted:
-            named = name_left_out(self._examples, self._manner, n_presses)
+            named = name_once(self._examples, self._manner, n_presses)
             squares, limit, temperature = named.squares, None, named.temperature()
             one, at_least = self._accepted.get(1, (None, 1.0))
             if self._confidence is not None:

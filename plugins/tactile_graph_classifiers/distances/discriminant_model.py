@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph_classifiers.database.choice import Manner
-from tactile_graph_classifiers.distances.canonical import Space, WithLogarithms, means_of
+from tactile_graph_classifiers.distances.canonical import Space, WithLogarithms, means_of, product
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.intp]
@@ -87,7 +87,7 @@ def _squared_distances(rows: Array, means: Array) -> Array:
     """Return the squared distance of each row to each mean, shape (n, K)."""
     middle = means.mean(axis=0)  # which keeps the squares small that are taken from each other
     rows, means = rows - middle, means - middle
-    mixed = np.square(rows).sum(axis=1)[:, None] - 2.0 * rows @ means.T
+    mixed = np.square(rows).sum(axis=1)[:, None] - 2.0 * product(rows, means.T)
     return np.asarray(mixed + np.square(means).sum(axis=1))
 
 
@@ -113,11 +113,11 @@ class Learned(NamedTuple):
         extend = WithLogarithms.of(readings)
         rows = extend(readings)
         space = Space.of(rows, labels, shrinkage)
-        return cls(extend, space, rows @ space.whitening, labels)
+        return cls(extend, space, product(rows, space.whitening), labels)
 
     def located(self, readings: Array) -> Array:
         """Return other readings, shape (n, F), in the same coordinates, shape (n, T)."""
-        return np.asarray(self.extend(readings) @ self.space.whitening)
+        return product(self.extend(readings), self.space.whitening)
 
     def discriminant(self, manner: Manner) -> Discriminant:
         """Return the discriminant made in a manner of this shrinkage.

@@ -10,8 +10,9 @@ from tactile_graph.errors import one_of
 from tactile_graph_classifiers.database.choice import Manner
 from tactile_graph_classifiers.database.known import Known, KnownObject
 from tactile_graph_classifiers.database.names import recording_of
-from tactile_graph_classifiers.distances.choosing import Examples, left_out_names
+from tactile_graph_classifiers.distances.choosing import left_out_names
 from tactile_graph_classifiers.distances.discriminant_model import Labels
+from tactile_graph_classifiers.distances.examples import Examples
 
 MOST_NAMED = 6
 

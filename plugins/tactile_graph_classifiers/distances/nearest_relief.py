@@ -13,9 +13,10 @@ from tactile_graph.errors import DataError
 from tactile_graph.wires import Image
 from tactile_graph_classifiers.database.known import OtherPadError
 from tactile_graph_classifiers.database.opening import load_reliefs
-from tactile_graph_classifiers.distances.choosing import Examples, choose
+from tactile_graph_classifiers.distances.choosing import choose
 from tactile_graph_classifiers.distances.classifier import Lookup
 from tactile_graph_classifiers.distances.discriminant_model import Learned
+from tactile_graph_classifiers.distances.examples import Examples
 from tactile_graph_classifiers.distances.identity import UNKNOWN, Identity
 from tactile_graph_classifiers.distances.left_out import largest_accepted
 from tactile_graph_classifiers.measuring.measurements import Measurements

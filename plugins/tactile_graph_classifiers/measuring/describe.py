@@ -103,7 +103,7 @@ class Describe:
         load[good[window]] = np.maximum(image.values[window][good[window]], 0.0)
         peak = float(load.max())
         load /= peak  # sums of squares and sixth powers of any unit stay within what numbers hold
-        core = load >= CORE * np.quantile(load[good[window]], 0.95)
+        core = load >= CORE * outline.quantiles(load[good[window]], (0.95,))
         core &= load > 0.0
         area = np.count_nonzero(core) * image.pitch_cm[0] * image.pitch_cm[1]
         numbers = [

@@ -8,7 +8,7 @@ import numpy as np
 
 from tactile_graph.compiled import compiled_later
 from tactile_graph_filters.parting.filled_hull import RIM_CELLS
-from tactile_graph_filters.parting.partition import Partition, Reals
+from tactile_graph_filters.parting.partition import Owners, Partition, Reals
 
 CELLS, LOGS, AREA, NOTCHES, WEAK, LONG = 0, 1, 2, 3, 4, 5
 """Places in the terms; see `hull_terms`."""
@@ -75,9 +75,7 @@ def hull_terms(cells: Partition, one: int, two: int, levels: Levels) -> Reals:
     half, root = 0.5 * (xx + yy), np.sqrt(0.25 * (xx - yy) ** 2 + xy * xy)
     terms[LONG] = 0.5 * np.log((half + root) / max(half - root, 1e-6))
     hull_x, hull_y, m = hull_of(x, y, ends)
-    for k in range(m - 1):
-        terms[AREA] += 0.5 * (hull_x[k] * hull_y[k + 1] - hull_x[k + 1] * hull_y[k])
-    terms[AREA] = abs(terms[AREA])
+    terms[AREA] = area_of(hull_x, hull_y, m)
     limit = levels.weak * total / n
     for i in range(rows):
         for j in range(columns):
@@ -97,6 +95,39 @@ def hull_terms(cells: Partition, one: int, two: int, levels: Levels) -> Reals:
             elif not mine and -1e-9 <= depth < RIM_CELLS:
                 terms[NOTCHES] += 1.0
     return terms
+
+
+@compiled_later
+def hull_area(owner: Owners, group: int) -> float:
+    """Return the area of the hull of a group's cells alone, as `hull_terms` does."""
+    rows, columns = owner.shape
+    x, y = np.empty(2 * rows), np.empty(2 * rows)
+    ends = n = 0
+    for i in range(rows):
+        left, right = columns, -1
+        for j in range(columns):
+            if owner[i, j] == group:
+                left, right = min(left, j), j
+                n += 1
+        if right >= 0:
+            x[ends], y[ends] = left, i
+            ends += 1
+            if right > left:
+                x[ends], y[ends] = right, i
+                ends += 1
+    if n < 3:
+        return 0.0
+    hull_x, hull_y, m = hull_of(x, y, ends)
+    return area_of(hull_x, hull_y, m)
+
+
+@compiled_later
+def area_of(hull_x: Reals, hull_y: Reals, m: int) -> float:
+    """Return the area within a closed hull of so many points."""
+    area = 0.0
+    for k in range(m - 1):
+        area += 0.5 * (hull_x[k] * hull_y[k + 1] - hull_x[k + 1] * hull_y[k])
+    return abs(area)
 
 
 @compiled_later

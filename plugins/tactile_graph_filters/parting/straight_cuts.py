@@ -9,7 +9,7 @@ import numpy as np
 from tactile_graph.compiled import compiled_later
 from tactile_graph_filters.parting.hull_terms import CELLS, FLOOR, Levels, hull_terms
 from tactile_graph_filters.parting.partition import Owners, Partition, cut_out
-from tactile_graph_filters.parting.two_or_one import log_odds
+from tactile_graph_filters.parting.two_or_one import log_odds, most_odds
 
 LEAST_CELLS = 3
 """No cut leaves fewer."""
@@ -104,9 +104,11 @@ def cut_best(cells: Partition, group: int, new: int, levels: Levels, above: floa
         while at < high:
             moved = moved_over(part.owner, group, new, COSINES[way], SINES[way], at)
             if moved != before and LEAST_CELLS <= moved <= both[CELLS] - LEAST_CELLS:
-                odds = log_odds(part, new, group, levels, both)
-                if odds > best + 1e-9:
-                    best, best_way, best_at = odds, way, at
+                fewer = min(moved, int(both[CELLS]) - moved)
+                if most_odds(part, new, group, levels, both, fewer) > best:
+                    odds = log_odds(part, new, group, levels, both)
+                    if odds > best + 1e-9:
+                        best, best_way, best_at = odds, way, at
             at, before = at + STEP_CELLS, moved
     if best_way < 0:
         return False

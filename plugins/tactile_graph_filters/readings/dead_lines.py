@@ -54,33 +54,49 @@ def _constant_plain(values: NDArray[np.float64], rows: Flags, columns: Flags) ->
 
 @compiled_twin_of(_constant_plain)
 def constant_lines(values, rows, columns):  # type: ignore[no-untyped-def]
-    """Do the same in loops: what more than half of the cells read is found without sorting."""
-    _constant(values, rows)
-    _constant(values.T, columns)
+    """Do the same in loops; few lines have so many equal neighbours that they can be constant."""
+    n_rows, n_columns = values.shape
+    along_rows, along_columns = np.zeros(n_rows, np.int64), np.zeros(n_columns, np.int64)
+    for i in range(n_rows):
+        for j in range(1, n_columns):
+            along_rows[i] += values[i, j] == values[i, j - 1]
+        for j in range(n_columns if i > 0 else 0):  # as cells lie in memory, not down each column
+            along_columns[j] += values[i, j] == values[i - 1, j]
+    _constant(values, along_rows, rows)
+    _constant(values.T, along_columns, columns)
 
 
 @compiled_later
-def _constant(lines, constant):  # type: ignore[no-untyped-def]
-    """Write which lines are constant, by R. S. Boyer and J S. Moore's vote (1991, MJRTY).
+def _constant(lines, alike, constant):  # type: ignore[no-untyped-def]
+    """Write which lines are constant, given how many neighbours in each of them read the same.
+
+    Each cell that reads otherwise parts at most two pairs of neighbours.
+    """
+    n_lines, n = lines.shape
+    constant[:] = False
+    n_constant = 0
+    for i in range(n_lines):
+        if n < LEAST_CELLS or alike[i] < (2.0 * EQUAL_SHARE - 1.0) * n - 1.0:
+            continue
+        constant[i] = _equal_to_most(lines[i]) / n >= EQUAL_SHARE
+        n_constant += constant[i]
+        if not n_constant < MOST_SHARE * n_lines:
+            constant[:] = False
+            break
+
+
+@compiled_later
+def _equal_to_most(line):  # type: ignore[no-untyped-def]
+    """Return how many cells read what most do, by R. S. Boyer and J S. Moore's vote (1991, MJRTY).
 
     Each cell votes for its reading or against another's: only a majority can be left in the end.
     """
-    n_lines, n = lines.shape
-    n_constant = 0
-    for i in range(n_lines):
-        constant[i] = False
-        if n < LEAST_CELLS:
-            continue
-        most, votes = lines[i, 0], 0
-        for j in range(n):
-            if votes == 0:
-                most = lines[i, j]
-            votes += 1 if lines[i, j] == most else -1
-        equal = 0
-        for j in range(n):
-            equal += lines[i, j] == most
-        constant[i] = equal / n >= EQUAL_SHARE
-        n_constant += constant[i]
-    if not n_constant < MOST_SHARE * n_lines:
-        for i in range(n_lines):
-            constant[i] = False
+    most, votes = line[0], 0
+    for j in range(len(line)):
+        if votes == 0:
+            most = line[j]
+        votes += 1 if line[j] == most else -1
+    equal = 0
+    for j in range(len(line)):
+        equal += line[j] == most
+    return equal

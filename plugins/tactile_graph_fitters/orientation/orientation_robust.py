@@ -101,7 +101,7 @@ def area_moments(corners: Values) -> tuple[float, float, float, float, float]:
     """
     first = corners[0]
     x, y = (corners - first).T
-    xn, yn = np.roll(x, -1), np.roll(y, -1)
+    xn, yn = np.concatenate([x[1:], x[:1]]), np.concatenate([y[1:], y[:1]])
     cross = x * yn - xn * y
     area = 0.5 * float(cross.sum())
     cx, cy = float(((x + xn) @ cross) / (6.0 * area)), float(((y + yn) @ cross) / (6.0 * area))

@@ -268,13 +268,13 @@ class Tally:
 
     def _assumed(self, result: Result) -> None:
         """Note what nodes took that nobody said."""
-        seen: set[int] = set()  # a value may be handed on as it is
-        for item in result.plan.nodes:
-            value = result.outcome(item.name)
-            told = assumed_by(value)
-            if told and id(value) not in seen and item.name not in self.assumed:
-                self.assumed[item.name] = (told, result.frame.index)
-            seen.add(id(value))
+        told = {i.name: assumed_by(result.outcome(i.name)) for i in result.plan.nodes}
+        for name, text in told.items():
+            if text and name not in self.assumed:
+                node = result.plan.pipeline.nodes[name]
+                refs = (*node.choices, *(ref for bound in node.inputs for ref in bound.refs))
+                if text not in {told.get(ref.node) for ref in refs}:  # else it was handed on
+                    self.assumed[name] = (text, result.frame.index)
 
     def _noticed(self, result: Result) -> None:
         """Note what steps had to say beside their values."""

@@ -14,11 +14,12 @@ from tactile_graph import Frame, load
 from tactile_graph.errors import DataError, PipelineError, RuleError
 from tactile_graph_classifiers.database.choice import Choice, Manner
 from tactile_graph_classifiers.database.opening import load_known
-from tactile_graph_classifiers.distances import choosing
+from tactile_graph_classifiers.distances import canonical, choosing
 from tactile_graph_classifiers.distances.canonical import Space, WithLogarithms, solved
-from tactile_graph_classifiers.distances.choosing import Examples, choose, name_left_out
+from tactile_graph_classifiers.distances.choosing import choose, name_left_out
 from tactile_graph_classifiers.distances.discriminant import CanonicalDiscriminant
 from tactile_graph_classifiers.distances.discriminant_model import Learned
+from tactile_graph_classifiers.distances.examples import Examples
 from tactile_graph_classifiers.measuring.measurements import Measurements
 
 NAMES = tuple(f"f{i}" for i in range(12))
@@ -307,6 +308,22 @@ def test_of_the_same_examples_the_manner_is_chosen_once(monkeypatch):
     choosing._chosen.cache_clear()
 
 
+def test_of_the_same_examples_what_is_left_out_is_named_once(monkeypatch):
+    calls = []
+    left_out = choosing.name_left_out
+    monkeypatch.setattr(choosing, "name_left_out", lambda *its: calls.append(its) or left_out(*its))
+    choosing._named.cache_clear()
+    some, manner = examples(many(3, 3)), Manner(0.1, 2, 5.0)
+    first = choosing.name_once(some, manner, 1)
+    assert choosing.name_once(examples(many(3, 3)), manner, 1) is first
+    for found, wanted in zip(first, left_out(some, manner), strict=True):
+        assert (found == wanted).all()
+    choosing.name_once(some, manner, 2)
+    choosing.name_once(examples(many(3, 4)), manner, 1)
+    assert len(calls) == 3
+    choosing._named.cache_clear()
+
+
 def test_in_its_space_readings_of_an_object_vary_alike_in_every_direction():
     some = examples(many(8, seed=1, n=400))
     rows = WithLogarithms.of(some.readings)(some.readings)
@@ -315,6 +332,31 @@ def test_in_its_space_readings_of_an_object_vary_alike_in_every_direction():
     off = at - np.array([at[some.labels == k].mean(axis=0) for k in range(8)])[some.labels]
     np.testing.assert_allclose(off.T @ off / (len(off) - 8), np.eye(24), atol=1e-4)
     np.testing.assert_allclose(space.variates.T @ space.variates, np.eye(7), atol=1e-9)
+
+
+@pytest.mark.parametrize("shape", [(1, 400, 9000), (70, 1, 8000), (188, 80, 188), (9, 5000, 30)])
+def test_products_are_made_in_pieces_that_blas_leaves_to_one_thread(shape):
+    m, k, n = shape
+    left, right = (np.random.default_rng(2).normal(size=size) for size in ((m, k), (k, n)))
+    work = []
+
+    class Watched(np.ndarray):
+        def __matmul__(self, other):
+            work.append(self.size * other.shape[1])
+            return np.asarray(self) @ np.asarray(other)
+
+    found = canonical.product(left.view(Watched), right.view(Watched))
+    np.testing.assert_allclose(found, left @ right, rtol=1e-9, atol=1e-9)
+    assert sum(work) == m * k * n
+    assert max(work) <= canonical.SMALL
+
+
+@pytest.mark.parametrize("n", [0, 1, 24, 25, 97, 188])
+def test_an_inverse_root_is_that_of_cholesky(n):
+    rows = np.random.default_rng(n).normal(size=(40, n))
+    matrix = rows.T @ rows / 40.0 + 0.01 * np.eye(n)
+    wanted = solved(np.linalg.cholesky(matrix), np.eye(n))
+    np.testing.assert_allclose(canonical.inverse_root(matrix), wanted, rtol=1e-9, atol=1e-11)
 
 
 def test_a_nearly_singular_root_is_solved_as_exactly_as_by_scipy():

@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 from helpers_classifiers import digital_disc, image_and_mask
 from tactile_graph.errors import DataError, Degenerate
+from tactile_graph_classifiers.measuring import load_spread, outline
 from tactile_graph_classifiers.measuring.describe import NAMES, Describe
 from tactile_graph_classifiers.measuring.features import FeaturesOf
 
@@ -127,3 +129,29 @@ def test_what_cannot_be_measured_is_refused_as_by_features():
         described(~empty, np.zeros((3, 3)))
     with pytest.raises(DataError, match="no finite number"):
         described(~empty, np.full((3, 3), np.nan))
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 20, 501])
+def test_quantiles_are_those_of_numpy(n):
+    values = np.random.default_rng(n).normal(size=n).round(1)
+    shares = [0.0, 0.05, 0.25, 0.5, 0.75, 0.9, 0.95, 1.0]
+    np.testing.assert_array_equal(outline.quantiles(values, shares), np.quantile(values, shares))
+
+
+def test_a_border_holes_and_moments_are_those_of_numpy_and_scipy():
+    rng = np.random.default_rng(3)
+    on = rng.random((14, 11)) < 0.6
+    np.testing.assert_array_equal(outline.bordered(on), np.pad(on, 1))
+    filled = described(on)["filled_share"]
+    assert filled == np.count_nonzero(on) / np.count_nonzero(ndimage.binary_fill_holes(on))
+    z, shares = rng.normal(size=30) + 1j * rng.normal(size=30), rng.dirichlet(np.ones(30))
+    wanted = [abs((shares * z**p * z.conj() ** q).sum()) for p, q in outline.ORDERS]
+    np.testing.assert_allclose(outline.moments(z, shares), wanted, rtol=1e-12)
+
+
+def test_how_far_an_image_was_moved_is_found_once_for_images_of_a_size():
+    load_spread._rings.cache_clear()
+    on, values = lopsided()
+    for factor in (1.0, 2.0):
+        described(on, factor * values)
+    assert load_spread._rings.cache_info().misses == 1

@@ -14,6 +14,7 @@ from tactile_graph_filters.parting.hull_terms import (
     NOTCHES,
     WEAK,
     Levels,
+    hull_area,
     hull_terms,
 )
 from tactile_graph_filters.parting.partition import Partition
@@ -25,7 +26,14 @@ from tactile_graph_filters.parting.straight_cuts import (
     cut_best,
     joined_and_cut,
 )
-from tactile_graph_filters.parting.two_or_one import NAMES, WEIGHTS, cut_terms, log_odds, seam
+from tactile_graph_filters.parting.two_or_one import (
+    NAMES,
+    WEIGHTS,
+    cut_terms,
+    log_odds,
+    most_odds,
+    seam,
+)
 
 pytestmark = pytest.mark.usefixtures("warm_kernels")
 
@@ -127,6 +135,24 @@ def test_the_odds_weigh_what_the_terms_say():
     fitted = [3.68, 3.08, 2.44, 9.55, -1.42, -0.659, -3.24, -22.6, -1.84, -0.211]
     assert log_odds(*settings) == pytest.approx(np.dot(fitted, list(terms.values())))
     assert WEIGHTS.tolist() == fitted
+
+
+@pytest.mark.usefixtures("plain_kernels")
+@pytest.mark.parametrize("seed", range(8))
+def test_no_cut_is_likelier_than_is_said_in_less_time(seed):
+    rng = np.random.default_rng(seed)
+    on = LOBES.values & (rng.random(LOBES.shape) < 0.9)
+    load, known = on * rng.random(on.shape), np.ones(on.shape, bool)
+    for at in range(3, 9):
+        owner = np.where(on, np.where(np.arange(on.shape[1]) < at, 1, 2), 0).astype(np.int32)
+        cells = Partition(owner, load, known)
+        both = hull_terms(cells, 1, 2, LEVELS)
+        fewer = min(np.count_nonzero(owner == 1), np.count_nonzero(owner == 2))
+        found = log_odds(cells, 1, 2, LEVELS, both)
+        assert most_odds(cells, 1, 2, LEVELS, both, fewer) >= found - 1e-9
+        assert hull_area(owner, 1) == hull_terms(cells, 1, 1, LEVELS)[AREA]
+    assert (WEIGHTS[2:4] > 0.0).all()
+    assert WEIGHTS[NAMES.index("length")] < 0.0
 
 
 def test_low_readings_along_the_cut_make_it_likelier():

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from helpers_modes import compiled, held, plainly
+from helpers_modes import answered_by, compiled, held, plainly
 from tactile_graph.wires import Image
+from tactile_graph_filters.readings import dead_lines as dead_lines_module
 from tactile_graph_filters.readings.dead_lines import constant_lines, dead_lines
 
 
@@ -49,6 +50,26 @@ def test_lines_of_few_cells_are_never_called_dead() -> None:
 
 def test_an_image_without_columns_has_no_dead_line() -> None:
     assert found(np.zeros((9, 0))) == ([], [])
+
+
+def test_a_dead_line_is_found_however_few_of_its_neighbours_are_equal() -> None:
+    values = np.random.default_rng(1).normal(0.0, 1.0, (16, 16))
+    values[5, :], values[:, 9] = 3.0, 4.0
+    values[5, 1:14:4] = values[5:15:3, 9] = 7.0
+    assert found(values.copy()) == ([5], [9])
+    values[5, 15] = 7.0
+    assert found(values) == ([], [9])
+
+
+def test_noise_is_told_from_dead_lines_by_its_neighbours_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    votes: list[int] = []
+    monkeypatch.setattr(dead_lines_module, "_equal_to_most", lambda line: votes.append(1) or 0)
+    values = noisy()
+    with answered_by("plain"):
+        constant_lines.loops(values, np.empty(10, bool), np.empty(12, bool))
+    assert not votes
 
 
 @pytest.mark.slow  # much is compiled

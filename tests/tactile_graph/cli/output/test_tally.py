@@ -324,6 +324,43 @@ def test_a_notice_that_breaks_is_told_by_its_node_and_the_run_goes_on(
 
 
 @dataclass
+class Assuming:
+    x_cm: float
+    assumed: str = "x is 1"
+
+
+def assuming(image: Image) -> Assuming:
+    return Assuming(1.0)
+
+
+def alike(value: Assuming) -> Assuming:
+    return Assuming(value.x_cm)
+
+
+def other(value: Assuming) -> Assuming:
+    return Assuming(2.0, "x is 2")
+
+
+def test_what_was_assumed_is_told_of_the_node_that_did_and_of_none_that_hands_it_on(
+    hand_made: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install(monkeypatch, hand_made, steps={"assuming": assuming, "alike": alike, "other": other})
+    (hand_made / "r.txt").write_text("1\n2\n3\n")
+    nodes = (
+        "a: {step: assuming, in: frame}, as_is: {first_of: [a]}, made: {step: alike, in: as_is},"
+        " b: {step: other, in: made}, c: {step: assuming, in: frame}"
+    )
+    (hand_made / "p.yaml").write_text(f"{{pipeline: p, nodes: {{{nodes}}}, outputs: [made, b, c]}}")
+    got = call("run", "p.yaml", "r.txt", "-o", "out.jsonl")
+    assert got.exit_code == 0
+    assert [x for x in got.stderr.splitlines() if x.startswith("assumed")] == [
+        "assumed  a: x is 1 (in frame 0)",
+        "assumed  b: x is 2 (in frame 0)",
+        "assumed  c: x is 1 (in frame 0)",
+    ]
+
+
+@dataclass
 class Columnless:
     x_cm: float
     columns_shown = ("gone_cm",)
