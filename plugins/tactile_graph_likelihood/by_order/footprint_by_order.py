@@ -52,7 +52,9 @@ class FootprintByOrder:
     Any strictly monotone change of the readings leaves the answer as it is. Volts of a circuit
     whose elements shadow each other are no such change of the load: an image in volts is decoupled
     first; another quantity is taken as it is. The likelihood is in `by_order.likelihood`;
-    ``sliver`` is the middle of a guess, a factor of 7 wide, and is estimated with the outline.
+    ``sliver`` is the middle of a guess, a factor of 7 wide, and is estimated with the outline. So
+    is the scatter of gains where touch and order are likelier than the pad's own lets them be: with
+    too large a one outlines come out small.
 
     ``fits`` is False where touch and order are less likely than the model's own by more than
     three standard deviations, or where they leave a pattern over, as with `fit_footprint`. The

@@ -7,12 +7,13 @@ import math
 import numpy as np
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.by_order.hazards import hazard
+from tactile_graph_likelihood.by_order.hazards import hazard, hazards_at
 from tactile_graph_likelihood.by_order.likelihood import (
     LEAST_SHARE,
     Order,
     OrderProblem,
     log_order,
+    noise_at,
     shares_along,
 )
 from tactile_graph_likelihood.geometry.covered import Box
@@ -110,20 +111,23 @@ def order_moments(
 
 
 @compiled_as_is
-def order_goodness_of_fit(problem: OrderProblem, p: Values) -> GoodnessOfFit:
+def order_goodness_of_fit(problem: OrderProblem, p: Values) -> tuple[GoodnessOfFit, float]:
     """Return how surprising touch and order are at a posterior mean, and what patterns they leave.
 
     The residuals are of the loads at which `log_order` expects the elements of such an order;
-    those of many equal readings are left out.
+    those of many equal readings are left out. Beside it, by how many deviations the order alone is
+    likelier than it should be.
     """
-    kind, corners, noise = problem.kind, problem.corners, problem.noise
-    states, order, ends, table = problem.states, problem.order, problem.ends, problem.hazards
+    kind, corners, noise = problem.kind, problem.corners, noise_at(problem, p)
+    states, order, ends = problem.states, problem.order, problem.ends
+    table = hazards_at(problem.hazards, noise[SIGMA])
     box, share = shares_around(kind, corners, p, problem.grid, noise, states.shape)
     n, sigma, t = order.shape[0], noise[SIGMA], p[unknowns(kind, corners)]
     along, levels = shares_along(share, box, order), np.zeros(n)
     log_order(along, ends, sigma, t, table, levels)
-    sums = touch_moments(share, t, box, states, noise)
-    sums += order_moments(along, ends, sigma, table, levels)
+    alone = order_moments(along, ends, sigma, table, levels)
+    sums = touch_moments(share, t, box, states, noise) + alone
+    orderly = (alone[0] - alone[1]) / math.sqrt(alone[2]) if alone[2] > 0.0 else 0.0
     residuals, leaning = np.zeros(share.shape), np.zeros(share.shape)
     first = 0
     for k in range(n):
@@ -138,4 +142,4 @@ def order_goodness_of_fit(problem: OrderProblem, p: Values) -> GoodnessOfFit:
         leaning[i, j] = standardised(u, z, tail, density) if z > SEEN else 0.0
     surprise = (sums[0] - sums[1] - 0.5 * p.shape[0]) / math.sqrt(sums[2])
     lean, fall = trend(leaning, dome(share))
-    return GoodnessOfFit(surprise, neighbours_alike(residuals), lean, fall)
+    return GoodnessOfFit(surprise, neighbours_alike(residuals), lean, fall), orderly

@@ -41,6 +41,19 @@ def hazards(strays: float, voids: float, sigma: float) -> Values:
     return table
 
 
+def hazard_parts(strays: float, voids: float) -> Values:
+    """Return the table's part that no sigma changes and the strays' for each unit of it, (2, N)."""
+    own = hazards(strays, voids, 0.0)
+    return np.stack((own, hazards(strays, voids, 1.0) - own))
+
+
+@compiled_as_is
+def hazards_at(parts: Values, sigma: float) -> Values:
+    """Return the table at a standard deviation of ln gain, from its parts or from one at it."""
+    table: Values = parts[0] + sigma * parts[1] if parts.shape[0] > 1 else parts[0]
+    return table
+
+
 @compiled_as_is
 def hazard(table: Values, x: float) -> float:
     """Return the rate at a place, by its neighbours in the table."""

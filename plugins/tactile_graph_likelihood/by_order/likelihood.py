@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_as_is
-from tactile_graph_likelihood.by_order.hazards import hazard
+from tactile_graph_likelihood.by_order.hazards import hazard, hazards_at
 from tactile_graph_likelihood.geometry.covered import Box
 from tactile_graph_likelihood.geometry.outlines import Values, unknowns
 from tactile_graph_likelihood.single.density.element_terms import (
@@ -51,7 +51,7 @@ EARLY = 6.0
 
 
 class OrderProblem(NamedTuple):
-    """What the posterior by touch and order depends on, beside the outline and t.
+    """What the posterior by touch and order depends on, beside the outline, t and a free sigma.
 
     Parameters
     ----------
@@ -61,8 +61,8 @@ class OrderProblem(NamedTuple):
         Row and column of the touched elements, those that read least first.
     ends : ndarray of int, shape (n,)
         For each of them the place after the last that reads the same.
-    hazards : ndarray
-        As `hazards.hazards` gives them.
+    hazards : ndarray, shape (1, N) or (2, N)
+        As `hazards.hazards` gives them or, where sigma is estimated, `hazards.hazard_parts`.
     """
 
     kind: int
@@ -194,16 +194,28 @@ def order_log_likelihood(problem: OrderProblem, p: Values) -> float:
     ----------
     problem : OrderProblem
     p : ndarray, shape (K,)
-        The outline's numbers, and t.
+        The outline's numbers, t and, where it is estimated, the logarithm of sigma.
     """
-    kind, corners, noise = problem.kind, problem.corners, problem.noise
+    kind, corners, noise = problem.kind, problem.corners, noise_at(problem, p)
     box, share = shares_around(kind, corners, p, problem.grid, noise, problem.states.shape)
     t = p[unknowns(kind, corners)]
     along = shares_along(share, box, problem.order)
+    table = hazards_at(problem.hazards, noise[SIGMA])
     levels = np.empty(problem.order.shape[0])
     return log_touched(share, t, box, problem.states, noise) + log_order(
-        along, problem.ends, noise[SIGMA], t, problem.hazards, levels
+        along, problem.ends, noise[SIGMA], t, table, levels
     )
+
+
+@compiled_as_is
+def noise_at(problem: OrderProblem, p: Values) -> Values:
+    """Return the noise, with the sigma of a point that has one."""
+    k = unknowns(problem.kind, problem.corners) + 1
+    if p.shape[0] == k:
+        return problem.noise
+    noise = problem.noise.copy()
+    noise[SIGMA] = math.exp(p[k])
+    return noise
 
 
 @compiled_as_is

@@ -13,7 +13,12 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Circle, Image, Mask, Rectangle
 from tactile_graph_likelihood.by_order.footprint_by_order import FootprintByOrder
 from tactile_graph_likelihood.by_order.goodness_of_fit import order_moments, touch_moments
-from tactile_graph_likelihood.by_order.hazards import hazard, hazards
+from tactile_graph_likelihood.by_order.hazards import (
+    hazard,
+    hazard_parts,
+    hazards,
+    hazards_at,
+)
 from tactile_graph_likelihood.by_order.likelihood import log_order, order_of
 
 pytestmark = pytest.mark.usefixtures("warm_kernels")
@@ -38,6 +43,14 @@ def test_the_rate_is_the_normal_one_until_only_strays_are_left():
         assert hazard.call(TABLE, x) == pytest.approx(normal, rel=1e-3)
     assert hazard.call(TABLE, -7.0) > 1e-8
     assert hazard.call(TABLE, 12.0) < 1.0 < hazard.call(TABLE, 3.0)
+
+
+def test_rates_at_a_sigma_are_those_of_its_own_table():
+    parts = hazard_parts(1e-3, 0.16)
+    for sigma in (0.05, 0.48, 1.2):
+        own = hazards(1e-3, 0.16, sigma)
+        assert hazards_at.reference(parts, sigma) == pytest.approx(own)
+        assert hazards_at.reference(own[None], 0.7) == pytest.approx(own, abs=0.0)
 
 
 @pytest.mark.slow
@@ -265,3 +278,26 @@ def test_what_neither_touch_nor_order_explains_is_flagged(kind):
     assert sum(not f.fits for f in found) >= 5
     plain = [step(disturbed("", np.random.default_rng(seed))) for seed in range(6)]
     assert all(f.fits for f in plain)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sigma", [0.05, 0.12])
+def test_a_pad_more_even_than_told_does_not_make_outlines_small(sigma):
+    step, rows = made(FootprintByOrder, on_pad="whole"), []
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        true = Circle(*rng.uniform(8.0, 12.0, 2), rng.uniform(3.5, 6.0))
+        found = step(drawn(true, 60.0, rng, sigma=sigma, voids=0.0))
+        rows.append((found.radius_cm - true.radius_cm, found.posterior.contains(true), found.fits))
+    off, held, fits = np.mean(rows, axis=0)
+    assert abs(off) < 0.08
+    assert held >= 0.75
+    assert fits == 1.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sigma", [0.48, 0.9])
+def test_sigma_is_not_estimated_on_a_pad_at_least_as_uneven_as_told(sigma):
+    step, rng = made(FootprintByOrder, on_pad="whole"), np.random.default_rng(0)
+    found = [step(drawn(Circle(10.0, 9.5, 5.5), 60.0, rng, sigma=sigma)) for _ in range(10)]
+    assert sum(len(f.posterior.mean) == 4 for f in found) >= 8

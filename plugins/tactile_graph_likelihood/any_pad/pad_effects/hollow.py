@@ -33,6 +33,30 @@ without one, one in a thousand has more."""
 MARGIN = 0.75
 """Sides of an element by which it may lie beyond a hollow and still be partly over it."""
 
+DIM, CENTRAL, SHOWN = 0.3, 4, 0.4
+"""Of a rim's mean load, what elements within it read at most where a cover carries it there; the
+fewest of them that show, and their share, for that to be said."""
+
+
+def is_covered_rim(kind: int, readings: Readings, p: Values) -> bool:
+    """Return whether what lies within an outline's rim reads, but far less than the rim does.
+
+    So does a rim under a cover: how far that carries the load is not told by such a face.
+    Parameters as of `without_hollow`.
+    """
+    begin = readings.through_foam or readings
+    if begin.touched < FEWEST + CENTRAL:
+        return False
+    size = float(p[2]) if kind == DISC else min(float(p[2]), float(p[3]))
+    pitch, inwards, shows = float(readings.grid[2]), _depth_cm(kind, readings, p), begin.shows
+    edge = max(size - 2.0 * pitch, pitch)
+    far, logs, all_within = inwards[shows], begin.logs[shows], np.count_nonzero(inwards < edge)
+    dim = logs[far < edge]
+    if len(dim) < max(CENTRAL, SHOWN * all_within):
+        return False
+    rim = logs[(far >= edge) & (far < size)]
+    return len(rim) >= FEWEST and bool(dim.mean() < rim.mean() + math.log(DIM))
+
 
 def without_hollow(kind: int, readings: Readings, p: Values, voids: float) -> Readings | None:
     """Return readings whose elements over an object's hollow are unknown, None where it has none.

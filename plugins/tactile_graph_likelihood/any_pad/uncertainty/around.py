@@ -27,6 +27,7 @@ from tactile_graph_likelihood.any_pad.pad_effects.from_frame import (
     evened_by_foam,
     variance_inflation,
 )
+from tactile_graph_likelihood.any_pad.pad_effects.hollow import is_covered_rim
 from tactile_graph_likelihood.any_pad.pad_effects.through_foam import has_no_foam
 from tactile_graph_likelihood.any_pad.uncertainty.ghosts import as_ghostly
 from tactile_graph_likelihood.any_pad.uncertainty.lopsided import lopsided
@@ -69,6 +70,9 @@ large."""
 BLURRED = 0.6
 """Of the width of foam: by how much a face that falls or rises to its rim under it, nobody knows
 how, is larger or smaller than an even one that looks like it."""
+
+COVERED = 0.5
+"""Of a pitch: by how much a rim under a cover looks too large."""
 
 RISES, LESS = -0.5, 0.3
 """Of how far a load falls to its rim, in standard deviations: it rises there if it is less; and the
@@ -150,6 +154,8 @@ class _Around:
             0.0 if self.fits.unevened is None else unseen,
         )
         whole = unsized(self._cut_off(whole, shares), self._unended_cm(shares))
+        if is_covered_rim(told.kind, readings, whole.mean):
+            whole = unsized(whole, COVERED * float(readings.grid[2]))
         if readings.filtered:
             whole = as_filtered(whole, float(readings.grid[2]))
         if readings.is_wide and readings.gap is not None and not readings.gap.is_told:

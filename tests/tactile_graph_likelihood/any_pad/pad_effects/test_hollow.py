@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tactile_graph_likelihood.any_pad.pad_effects.hollow import without_hollow
+from tactile_graph_likelihood.any_pad.pad_effects.hollow import is_covered_rim, without_hollow
 from tactile_graph_likelihood.geometry.outlines import DISC, ELLIPSE, RECTANGLE
 from tactile_graph_likelihood.single.density.element_terms import ON, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.readings import Readings
@@ -59,3 +59,32 @@ def test_voids_all_over_are_no_hollow() -> None:
 def test_few_voids_are_not_looked_into_and_small_outlines_say_nothing() -> None:
     assert without_hollow(DISC, RING, np.array([10.0, 10.0, 7.0]), -2.0) is None
     assert without_hollow(DISC, RING, np.array([10.0, 10.0, 2.0]), HALF_EMPTY) is None
+
+
+RIM = (FAR < 7.0) & (FAR > 5.5)
+"""A bottle's: about an element wide."""
+
+
+def loads_of(loads: np.ndarray) -> Readings:
+    shown = loads > 0.0
+    states = np.where(shown, np.uint8(ON), np.uint8(UNDER))
+    return Readings(GRID, np.log(np.where(shown, loads, 1.0)), states, int(shown.sum()))
+
+
+@pytest.mark.parametrize("kind", [DISC, ELLIPSE])
+def test_a_middle_that_reads_far_less_is_a_rim_under_a_cover(kind: int) -> None:
+    p = np.array([10.0, 10.0, 7.2] if kind == DISC else [10.0, 10.0, 7.2, 7.2, 0.3])
+    loads = np.where(RIM, 100.0, np.where(FAR < 8.5, 10.0, 0.0))
+    assert is_covered_rim(kind, loads_of(loads), p)
+    assert not is_covered_rim(kind, loads_of(np.where(RIM, 100.0, 0.0)), p)
+    undone = loads_of(np.where(RIM, 100.0, 0.0))._replace(through_foam=loads_of(loads))
+    assert is_covered_rim(kind, undone, p)
+
+
+def test_uneven_elements_and_small_outlines_are_no_such_rim() -> None:
+    for seed in range(100):
+        gains = np.exp(0.7 * np.random.default_rng(seed).standard_normal(FAR.shape))
+        found = loads_of(np.where(FAR < 7.0, 100.0 * gains, 0.0))
+        assert not is_covered_rim(DISC, found, np.array([10.0, 10.0, 7.0]))
+    small = loads_of(np.where(FAR < 2.0, 100.0 - 90.0 * (FAR < 1.0), 0.0))
+    assert not is_covered_rim(DISC, small, np.array([10.0, 10.0, 2.0]))
