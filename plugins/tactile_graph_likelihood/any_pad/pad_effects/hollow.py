@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
+from tactile_graph.compiled import compiled_later
 from tactile_graph_likelihood.any_pad.pad_effects.from_frame import lines
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
-from tactile_graph_likelihood.single.density.element_terms import UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import ON, OVER, UNKNOWN, States
 from tactile_graph_likelihood.single.readings import Readings
 
 MANY_VOIDS = -1.1
@@ -47,15 +48,39 @@ def is_covered_rim(kind: int, readings: Readings, p: Values) -> bool:
     begin = readings.through_foam or readings
     if begin.touched < FEWEST + CENTRAL:
         return False
-    size = float(p[2]) if kind == DISC else min(float(p[2]), float(p[3]))
-    pitch, inwards, shows = float(readings.grid[2]), _depth_cm(kind, readings, p), begin.shows
-    edge = max(size - 2.0 * pitch, pitch)
-    far, logs, all_within = inwards[shows], begin.logs[shows], np.count_nonzero(inwards < edge)
-    dim = logs[far < edge]
-    if len(dim) < max(CENTRAL, SHOWN * all_within):
+    return bool(has_dim_middle.call(kind, begin.grid, begin.logs, begin.states, p))
+
+
+@compiled_later
+def has_dim_middle(kind: int, grid: Values, logs: Values, states: States, p: Values) -> bool:
+    """Return the same of loads' logarithms and states, shape (rows, columns), on a grid."""
+    rows, columns = states.shape
+    pitch, middle = grid[2], 0.5 * grid[3]
+    shorter, cos, sin, across, down = p[2], 1.0, 0.0, 1.0, 1.0
+    if kind != DISC:
+        shorter, cos, sin = min(p[2], p[3]), math.cos(p[4]), math.sin(p[4])
+        across, down = shorter / p[2], shorter / p[3]
+    edge = max(shorter - 2.0 * pitch, pitch)
+    n_within = n_dim = n_rim = 0
+    dim = rim = 0.0
+    for i in range(rows):
+        y = grid[1] + middle + pitch * i - p[1]
+        for j in range(columns):
+            x = grid[0] + middle + pitch * j - p[0]
+            u, v = across * (x * cos - y * sin), down * (x * sin + y * cos)
+            far = max(abs(u), abs(v)) if kind == RECTANGLE else math.hypot(u, v)
+            shows = states[i, j] == ON or states[i, j] == OVER
+            if far < edge:
+                n_within += 1
+                if shows:
+                    n_dim += 1
+                    dim += logs[i, j]
+            elif shows and far < shorter:
+                n_rim += 1
+                rim += logs[i, j]
+    if n_dim < max(float(CENTRAL), SHOWN * n_within) or n_rim < FEWEST:
         return False
-    rim = logs[(far >= edge) & (far < size)]
-    return len(rim) >= FEWEST and bool(dim.mean() < rim.mean() + math.log(DIM))
+    return bool(dim / n_dim < rim / n_rim + math.log(DIM))
 
 
 def without_hollow(kind: int, readings: Readings, p: Values, voids: float) -> Readings | None:
