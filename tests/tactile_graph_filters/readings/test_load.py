@@ -171,6 +171,21 @@ def test_of_a_pad_that_rests_above_zero_area_and_centre_are_the_footprint_s_and_
     assert "draws the centre along" in counts_cells_at_rest(image, alone)
 
 
+@pytest.mark.parametrize("rest", [-2.0, 0.0, 1.0, 3.0, 6.0, 40.0])
+def test_the_centre_of_what_lies_still_does_not_hang_on_single_cells_that_read_nothing(rest):
+    rng, y, x = np.random.default_rng(0), *np.mgrid[:16, :16]
+    on = np.hypot(x - 3.0, y - 7.0) < 2.3
+    found = []
+    for _ in range(40):
+        values = np.clip(np.round(rng.normal(rest, 2.0, (16, 16)) + 100.0 * on), 0.0, None)
+        its = LoadOf()(Image(values), Mask(on.copy()))
+        assert its.loaded
+        found.append((its.x_cm, its.y_cm))
+    assert np.std(found, axis=0).max() < 0.1
+    if rest > 2.0:
+        np.testing.assert_allclose(np.mean(found, axis=0), (3.5, 7.5), atol=0.1)
+
+
 def test_a_broken_cell_is_on_no_footprint_and_beside_none():
     values, valid = np.full((3, 3), 0.1), np.ones((3, 3), bool)
     values[1, :] = 0.0, 5.0, 5.0
@@ -188,11 +203,13 @@ def test_within_a_footprint_it_measures_as_the_reference_does(above):
     values = np.random.default_rng(0).normal(size=(16, 12))
     usable, on = (random_mask(seed, (16, 12)).values for seed in (0, 1))
     n, total, _, x, y, _ = references.measure(values, usable & on, above)
-    least = values[usable & ~on].min()
+    i, j = np.nonzero(usable)
+    beside = values[usable & ~on]
+    places = (j.sum(), i.sum(), usable.sum(), beside.size, (beside > 0.0).sum())
     whole = references.measure(values, usable, above)
-    expected = pytest.approx((*whole, n, total, x, y, least))
-    assert measure_within.loops(values, usable, on, above) == expected
-    assert measure_within.compiled(values, usable, on, above) == expected
+    for measured in (measure_within.loops, measure_within.compiled):
+        *found, its, at = measured(values, usable, on, above)
+        assert (*found, *its, *at) == pytest.approx((*whole, n, total, x, y, *places))
 
 
 def test_without_a_footprint_s_cell_the_area_is_0():
