@@ -200,8 +200,9 @@ class LoadOf:
     With a footprint the area is that of its cells, and the total still that of all cells. The
     centre is of all cells less what those beside the footprint read at rest, which is their median;
     where most of those do read something, or one of them less than zero, as of noise around it, it
-    is of the footprint's cells. What is below zero counts for the total then, too, so that noise adds nothing to it, and an image is
-    loaded where its footprint is, or the total is more than noise sums up to.
+    is of the footprint's cells. What is below zero counts for the total then, too, so that noise
+    adds nothing to it, and an image is loaded where its footprint is, or the total is more than
+    noise sums up to.
     """
 
     stateless = True
