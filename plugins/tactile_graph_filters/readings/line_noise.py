@@ -35,6 +35,15 @@ LONGEST_TURN = 16
 MOST_QUIET = 0.2
 """Of the columns, the share in which none of the loud rows reads more than rest: beside a load,
 more do."""
+STEEPEST, FAINTEST = 0.55, 0.9
+"""How the scatter within loud rows may go with what they read, as a power of it, for it to be noise
+beside a shift: of clear shifts, and of such as hardly stand out of it, where what is cut off makes
+it go. Gains make it go by the first power."""
+CLEAR, FAINT, STARK = 2.5, 1.8, 11.0
+"""Times that scatter, that the loudest row's mean is of a clear shift, and of one that hardly is;
+and from which on it is none."""
+APART = 1.25
+"""Times that what the louder rows read must be what the others do, for that power to be told."""
 MOST_BEYOND = 0.8
 """Of the readings above rest, the share that what is anywhere may leave over as loads."""
 
@@ -86,7 +95,8 @@ def _line_noise_plain(values: Values, known: Cells, rest: float, step: float) ->
     square says; what reads more than that, and cells beside it, are loads. Along the others chance
     alone decides which reads how much: those of one column have no more in common than their rows
     have, and none of the columns reads more than others. Under a load, they do. Where rows rise at
-    once to what they read and go on with that, they may as well be a bar from edge to edge.
+    once to what they read and go on with that, they may as well be a bar from edge to edge; so they
+    may where the cells of a row scatter by a share of what the row reads, as gains do.
     """
     rows, n = values.shape
     if rows < LEAST_LINES or n < LEAST_LINES:
@@ -116,6 +126,8 @@ def _line_noise_plain(values: Values, known: Cells, rest: float, step: float) ->
         return 0.0
     means = np.where(free, above, 0.0).sum(axis=1) / np.maximum(n_free, 1)
     if not is_soft(means, used, loud) or is_clumped.reference(above, free, means, used, loud):
+        return 0.0
+    if is_load_of_gains(above, free, means, loud):
         return 0.0
     its = above[loud][free[loud]]
     return math.sqrt(float(np.add.accumulate(its * its)[-1]) / its.size)
@@ -193,6 +205,8 @@ def line_noise(values, known, rest, step):  # type: ignore[no-untyped-def]
         return 0.0
     if not is_soft(means, used, loud) or is_clumped(above, free, means, used, loud):
         return 0.0
+    if is_load_of_gains(above, free, means, loud):
+        return 0.0
     return math.sqrt(total / n_loud_free)
 
 
@@ -238,3 +252,53 @@ def is_soft(means: Values, used: Cells, loud: Cells) -> bool:
     if edges > 0 and rises <= SOFT * mean * edges:
         return True
     return runs >= max(2, rows / LONGEST_TURN) and n_lifted <= LONGEST_RUN * runs
+
+
+@compiled_later
+def is_load_of_gains(above: Values, free: Cells, means: Values, loud: Cells) -> bool:
+    """Return whether loud rows are as of a load on uneven cells, or stand out too far for a shift.
+
+    Parameters
+    ----------
+    above, free : ndarray, shape (rows, columns)
+        How much cells read above rest, and which of them lie away from loads.
+    means : ndarray, shape (rows,)
+        Of each row's free cells.
+    loud : ndarray of bool, the same shape
+    """
+    rows, n = above.shape
+    ordered = np.sort(means[loud])
+    half = max(len(ordered) // 2, 1)
+    low, high = ordered[half - 1], ordered[len(ordered) - half]
+    low_mean = low_square = high_mean = high_square = 0.0
+    n_low = n_high = 0
+    for i in range(rows):
+        if not loud[i] or low < means[i] < high:
+            continue
+        square, n_free = 0.0, 0
+        for j in range(n):
+            if free[i, j]:
+                n_free += 1
+                square += (above[i, j] - means[i]) ** 2
+        if means[i] >= high:
+            n_high += 1
+            high_mean += means[i]
+            high_square += square / n_free
+        else:
+            n_low += 1
+            low_mean += means[i]
+            low_square += square / n_free
+    if n_low == 0 or high_square == 0.0:
+        return True
+    high_mean, low_mean = high_mean / n_high, low_mean / n_low
+    scatter, other = math.sqrt(high_square / n_high), math.sqrt(low_square / n_low)
+    stands_out = ordered[-1] / scatter
+    if stands_out > STARK:
+        return True
+    if high_mean < APART * low_mean:
+        return bool(stands_out > CLEAR)
+    if other == 0.0:
+        return True
+    power = math.log(scatter / other) / math.log(high_mean / low_mean)
+    faint = min(max((CLEAR - stands_out) / (CLEAR - FAINT), 0.0), 1.0)
+    return bool(power > STEEPEST + faint * (FAINTEST - STEEPEST))

@@ -20,7 +20,7 @@ TOGETHER = 256
 """Cells in which noise that is cut off shows: of smaller pads, frames are looked at together."""
 MOST_APART = 3.0
 """Times what a frame's largest reading lies above its lower quartile, by which noise may spread."""
-MANY, MORE = 0.9, 2.0
+MANY, MORE = 0.8, 2.0
 """Quantile of the spread of frames in which noise is cut off, and times the median, from which on
 it is that of the recording."""
 

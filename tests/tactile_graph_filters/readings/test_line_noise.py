@@ -103,6 +103,29 @@ def test_a_rod_from_edge_to_edge_is_none(steps: float, rows: slice) -> None:
         assert cut_off_noise.reference(*given(values)) == 0.0
 
 
+def soft_loads(rng: np.random.Generator, peak: float, gains: float) -> list[np.ndarray]:
+    """Return soft bars, wedges and rollers that reach across all columns of uneven cells."""
+    rows = np.arange(16.0)[:, None]
+    found = []
+    for _ in range(20):
+        uneven = np.exp(rng.normal(0.0, gains, (16, 16)))
+        bar = np.exp(-(((rows - rng.uniform(3.0, 12.0)) / rng.uniform(1.5, 3.0)) ** 2) / 2.0)
+        wedge = np.clip((rows - rng.uniform(2.0, 8.0)) / 8.0, 0.0, None)
+        rollers = np.exp(-((rows - 4.0) ** 2) / 2.0) + np.exp(-((rows - 11.0) ** 2) / 2.0)
+        noise = rng.normal(-2.0, 1.0, (16, 16))
+        found += [read(peak * uneven * its + noise) for its in (bar, wedge, rollers)]
+    return found
+
+
+@pytest.mark.parametrize("peak", [50.0, 200.0, 1000.0])
+@pytest.mark.parametrize("gains", [0.2, 0.4])
+def test_soft_loads_from_edge_to_edge_of_uneven_cells_are_none(peak: float, gains: float) -> None:
+    loads = soft_loads(np.random.default_rng(6), peak, gains)
+    frames = [frame for values in loads for frame in (values, values.T.copy())]
+    told = [line_noise.reference(frame, EVERY, 0.0, 1.0) > 0.0 for frame in frames]
+    assert np.mean(told) < 0.05
+
+
 @pytest.mark.parametrize("loads", [legs(1), legs(3), soles()], ids=["legs", "stool", "soles"])
 def test_loads_of_few_steps_side_by_side_are_none(loads: np.ndarray) -> None:
     for values in (loads, loads.T.copy()):
