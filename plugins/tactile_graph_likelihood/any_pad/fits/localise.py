@@ -80,8 +80,9 @@ LEANING_WHOLE = 0.9
 """Of outlines that lean and end near the pad's edge, the share that lies on it whole, at most: what
 is cut off leans more often than not, as a plate does that its other half pulls down."""
 
-STRANGE = -1.5
-"""Surprise from which on an even face's readings are rather foam's, whatever pattern they leave."""
+STRANGE, FEW_STRAYS = -1.5, 2e-3
+"""Surprise from which on an even face's readings are rather foam's, whatever pattern they leave;
+and the share of strays beyond its outline up to which these are not what is unlikely."""
 
 
 @dataclass(frozen=True)
@@ -372,8 +373,7 @@ class AnyPad:
             even = beyond_the_edge(its._fit(EVEN), readings, even)
         found = {EVEN: even}
         asked = [] if wide else asked_by([even.fit], self._others, self._least)
-        strange = self.told.kind != RECTANGLE and even.fit.surprise < STRANGE
-        if strange and FOAM not in asked and not wide:
+        if not wide and FOAM not in asked and its._is_strange(readings, even):
             asked.append(FOAM)
         if asked and "fall" not in asked and has_no_foam(readings):
             asked = [part for part in asked if part != FOAM]  # that of own gains falls to the rim
@@ -389,6 +389,12 @@ class AnyPad:
         if len(found) > 1 and not hidden and self.told.kind != RECTANGLE:
             found |= under_two(its._fit, its.told.point_of, readings, found)
         return found
+
+    def _is_strange(self, readings: Readings, even: Likeliest) -> bool:
+        """Return whether an even face's readings are unlikely, and not for what lies beyond it."""
+        if self.told.kind == RECTANGLE or even.fit.surprise >= STRANGE:
+            return False
+        return strays_beyond(self.told, readings, self.told.point_of(even)) <= FEW_STRAYS
 
     @property
     def _others(self) -> dict[str, list[float]]:
