@@ -55,7 +55,7 @@ from tactile_graph_likelihood.single.any_pressure import (
 )
 from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.climbs.search import SAME
-from tactile_graph_likelihood.single.density.element_terms import UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import OVER, UNKNOWN
 from tactile_graph_likelihood.single.model import EVERY, MORE, SECOND, Likeliest, Model
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
 from tactile_graph_likelihood.single.readings import Readings
@@ -79,6 +79,9 @@ NEAR_EDGE = 0.25
 LEANING_WHOLE = 0.9
 """Of outlines that lean and end near the pad's edge, the share that lies on it whole, at most: what
 is cut off leans more often than not, as a plate does that its other half pulls down."""
+
+SATURATED = 0.1
+"""Of what is touched, the share that reads the most from which on a pad saturates."""
 
 STRANGE, FEW_STRAYS = -1.5, 2e-3
 """Surprise from which on an even face's readings are rather foam's, whatever pattern they leave;
@@ -254,8 +257,7 @@ class AnyPad:
         clearly likelier: such a rim looks as if it lay between elements.
         """
         found, its = sized(self._fit(EVEN), readings, even)
-        rises = self.told.kind != RECTANGLE and even.fit.fall <= -self._least.rise
-        if readings.gap is None or not rises:
+        if readings.gap is None or not self._rises(readings, even):
             return found, its
         bare = readings
         if not readings.gap.is_told:  # slivers that lie between elements hold such a fit fast
@@ -373,6 +375,8 @@ class AnyPad:
             even = beyond_the_edge(its._fit(EVEN), readings, even)
         found = {EVEN: even}
         asked = [] if wide else asked_by([even.fit], self._others, self._least)
+        if RISE in asked and not self._rises(readings, even):
+            asked.remove(RISE)
         if not wide and FOAM not in asked and its._is_strange(readings, even):
             asked.append(FOAM)
         if asked and "fall" not in asked and has_no_foam(readings):
@@ -389,6 +393,15 @@ class AnyPad:
         if len(found) > 1 and not hidden and self.told.kind != RECTANGLE:
             found |= under_two(its._fit, its.told.point_of, readings, found)
         return found
+
+    def _rises(self, readings: Readings, even: Likeliest) -> bool:
+        """Return whether a face may press with its rim; where it saturates, its middle reads less.
+
+        A stiff rectangle's rise is no pressure of its own.
+        """
+        if self.told.kind == RECTANGLE or even.fit.fall > -self._least.rise:
+            return False
+        return bool(np.count_nonzero(readings.states == OVER) < SATURATED * readings.touched)
 
     def _is_strange(self, readings: Readings, even: Likeliest) -> bool:
         """Return whether an even face's readings are unlikely, and not for what lies beyond it."""
