@@ -55,9 +55,7 @@ def fall_of(values: Array, rest: Array | float, noise: float, read: Flags) -> Fa
     fall by less, even in more places. Frames in which most elements fall at once tell nothing.
     """
     plain = PLAIN * noise
-    if not read.any() or not any(
-        float(np.nanmin(off)) < -plain for off in _off(values, rest, read)
-    ):
+    if not any((off < -plain).any() for off in _off(values, rest, read)):
         return None
     n = int(np.count_nonzero(read))
     last = 1 if n < FEW else 2

@@ -42,6 +42,16 @@ def test_what_falls_beside_a_press_that_rises_farther_is_no_fall(lobe: float) ->
     assert fall_of(noise(), 220.0, 1.0, READ) is None
 
 
+def test_frames_without_any_reading_tell_nothing() -> None:
+    for by in (-60.0, 60.0):
+        values = pressed(by)
+        values[:10] = np.nan
+        found = fall_of(values, 220.0, 1.0, READ)
+        assert (found.frames if found else 0) == (20 if by < 0.0 else 0)
+        assert rest_among(values, READ, 0.0).noise == pytest.approx(1.0, abs=0.3)
+    assert fall_of(np.full_like(values, np.nan), 220.0, 1.0, READ) is None
+
+
 def test_single_elements_that_come_loose_are_no_fall() -> None:
     values = pressed(60.0)
     values[::2, 0, 0] = 0.0

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from annotated_types import Gt
+from numpy.typing import NDArray
 
 from tactile_graph.errors import Degenerate
 from tactile_graph.wires import Image, Mask, quick_mask
@@ -28,8 +30,19 @@ FEWEST_CELLS = 5
 """Cells from which on a frame's readings tell noise from a load at all."""
 FEW_CELLS, FOR_FEW = 32, 1.5
 """Up to so many cells a reading must rise by so many times as much: their closest quarter often
-lies far closer than noise does. Of empty frames of 9 to 32 cells 2 to 3 % at most then seem touched
-to the pipelines `locate`; 34 % of 9, 12 % of 16 and 5 % of 25 cells would."""
+lies far closer than noise does."""
+BY_LOWEST = ((3, 3.0, 96.0), (4, 0.9, 12.0))
+"""Where few cells tell no noise, some of the lowest do: how many, and what times their range the
+largest rises, for each cell of the pad and at most. Of empty frames of 5 to 32 cells up to 5 % seem
+touched to the pipelines `locate` (far more of readings that are cut off at 0). Of discs with a
+radius of 0.7 to 1 cell one in ten is not seen on 3 x 3 cells, one in 100 at most on more, but a
+quarter on 2 x 4 and most on 5 or 6 cells, hardly one of which they leave untouched."""
+FEWEST_IN_RINGS = 7
+"""Cells from which on noise hardly ever falls from ring to ring around the largest (`_of_few`)."""
+STANDS = 1.5
+"""Times the noise that the largest then rises at least, as the pipelines `locate` ask."""
+Found = tuple[float, float, int, int, float, NDArray[np.bool_]]
+"""Zero, noise, cells that show, those together, the largest rise, and which show."""
 
 
 class Showing(NamedTuple):
@@ -67,8 +80,10 @@ class AboveNoise:
     -----
     The zero and the noise are those of the frame's own closest quarter of readings, which is taken
     to be untouched; where these are all the same and the least, the noise is what lies just above
-    (`clipped_noise`). Of 32 cells or fewer a reading must rise half as much again, and where fewer
-    than four lie below the zero the largest must reach `noise_level`, too. Cells that are dead far
+    (`clipped_noise`). Of 32 cells or fewer a reading must rise half as much again. Where fewer than
+    four of them lie below the zero, or none rises so far, the lowest three or four tell the noise
+    (`BY_LOWEST`), or those farthest from the largest where readings fall from ring to ring around
+    it; where the lowest are the same the largest must reach `noise_level`. Cells that are dead far
     below the others are left out (`dead_below`), and rows and columns that rest above the others
     are brought back (`hot_lines`).
     ``level`` is the largest that any element must reach, in the image's unit.
@@ -108,18 +123,17 @@ class AboveNoise:
         if its is None:
             image = without_dead(image)
             deviations = self._deviations * FOR_FEW if few else self._deviations
-            zero, least, count, near, most, shows, _ = rise_of(image, deviations, False)
-            if few and count and _seems_without_noise(image, least, zero + most):
-                count, near, most, shows = 0, 0, 0.0, np.zeros_like(shows)
+            found = rise_of(image, deviations, False)[:6]
+            zero, least, count, near, most, shows = _of_few(image, found) if few else found
             mask = quick_mask(shows, image.pitch_cm, image.origin_cm, count)
             return Showing(mask, zero + least, min(most / max(least, TINY), MOST_RISE), near)
-        found = risen_by_element(image, its, self._deviations)
-        mask = Mask(found.shows, image.pitch_cm, image.origin_cm)
-        near = together.call(found.shows)
-        each = found.least if isinstance(found.least, float) else found.least[found.shows]
-        level = found.zero + float(np.max(found.least))
+        risen = risen_by_element(image, its, self._deviations)
+        mask = Mask(risen.shows, image.pitch_cm, image.origin_cm)
+        near = together.call(risen.shows)
+        each = risen.least if isinstance(risen.least, float) else risen.least[risen.shows]
+        level = risen.zero + float(np.max(risen.least))
         with np.errstate(over="ignore"):
-            rises = found.above[found.shows] / np.maximum(each, TINY)
+            rises = risen.above[risen.shows] / np.maximum(each, TINY)
         return Showing(mask, level, min(float(rises.max(initial=0.0)), MOST_RISE), near)
 
 
@@ -134,8 +148,51 @@ def _refuse_fewest(image: Image) -> None:
         )
 
 
-def _seems_without_noise(image: Image, least: float, highest: float) -> bool:
-    """Return whether few readings tell no noise, and none reaches the level above theirs."""
+def _of_few(image: Image, found: Found) -> Found:
+    """Return what shows of few cells: by the lowest, where no noise is told or all is below it."""
+    zero, least, count, _, most, shows = found
     values = image.values if image.valid is None else image.values[image.valid]
-    step = least_step(in_order(np.asarray(values, np.float64).ravel()))
-    return least <= 0.5 * step and highest < noise_level(image)
+    ordered = in_order(np.asarray(values, np.float64).ravel())
+    is_told = least > 0.5 * least_step(ordered)
+    if is_told and count:
+        return found
+    # Whole numbers are counts, whose noise no range may tell; at 0 they may be cut off, or a mask.
+    step = 1.0 if ordered[0] != 0.0 and (ordered == np.rint(ordered)).all() else 0.0
+    above = ordered - ordered[0]
+    reach = _reach_of_lowest(above, step)
+    if reach is None and values.ndim == 2 and ordered.size >= FEWEST_IN_RINGS:
+        reach = _reach_of_rings(values - ordered[0])
+    if reach is not None:
+        shows = image.values > ordered[0] + reach
+        shows = shows if image.valid is None else shows & image.valid
+        its = int(np.count_nonzero(shows)), together.call(shows), float(above[-1])
+        return float(ordered[0]), reach, *its, shows
+    no_range = max(float(above[BY_LOWEST[0][0] - 1]), step) == 0.0
+    if is_told or (no_range and zero + most >= noise_level(image)):
+        return found
+    return zero, least, 0, 0, 0.0, np.zeros_like(shows)
+
+
+def _reach_of_lowest(above: NDArray[np.float64], step: float) -> float | None:
+    """Return how far noise reaches by the lowest of few cells; none if nothing stands above."""
+    n = above.size
+    for lowest, each, most in BY_LOWEST:
+        if 2 * lowest <= n + 1:
+            its_range = max(float(above[max(lowest, n // 4) - 1]), step)
+            reach = min(each * n, most) * its_range
+            if 0.0 < reach < above[-1]:
+                return reach / STANDS
+    return None
+
+
+def _reach_of_rings(above: NDArray[np.float64]) -> float | None:
+    """Return what cells farthest from the largest reach; none unless they fall from ring to ring.
+
+    A load that leaves hardly a cell untouched does so.
+    """
+    rows, columns = np.indices(above.shape)
+    row, column = divmod(int(above.argmax()), above.shape[1])
+    away = (rows - row) ** 2 + (columns - column) ** 2
+    rings = [above[away == far] for far in np.unique(away)]
+    falls = all(far.max() < near.min() for near, far in pairwise(rings))
+    return float(rings[-1].max()) if falls else None

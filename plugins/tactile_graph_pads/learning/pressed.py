@@ -44,9 +44,12 @@ def often_pressed(values: Array, offset: Array, missing: Flags, step: float) -> 
     nothing = np.zeros_like(missing)
     if np.nanmin(values[:, ~missing]) < rest:
         return nothing, rest
+    empty = np.isnan(values).all(axis=(1, 2))
+    values = values[~empty] if empty.any() else values  # or they were the lowest
     total = np.nansum(values, axis=(1, 2))
-    lower = np.argsort(total, kind="stable")[: (len(total) + 1) // 2]
-    rise = float(np.nanmedian(np.nanquantile(values[lower][:, ~missing], 0.84, axis=0))) - rest
+    lower = values[np.argsort(total, kind="stable")[: (len(total) + 1) // 2]][:, ~missing]
+    lower = lower[:, ~np.isnan(lower).all(axis=0)]
+    rise = float(np.nanmedian(np.nanquantile(lower, 0.84, axis=0))) - rest
     far = rest + max(FAR * rise, FAR * step)
     found = ~missing & (offset > far) & ((values == rest).mean(axis=0) >= AT_REST)
     if not found.any():

@@ -175,6 +175,47 @@ def test_few_cells_are_not_touched_by_their_noise_and_are_by_a_load(shape, round
     assert seems_touched(shape, 2000.0, 100, rounded) == 1.0
 
 
+@pytest.mark.parametrize("shape", [(1, 5), (3, 3), (3, 4), (4, 4), (5, 5)])
+def test_few_cells_whose_noise_is_less_than_a_count_are_not_touched_by_it(shape):
+    rng, step = np.random.default_rng(0), AboveNoise()
+    frames = np.rint(rng.normal(20.0, 0.5, (400, *shape)))
+    seen = [step(image_of(values)) for values in frames]
+    assert np.mean([f.together > 3 or f.rise > 1.5 for f in seen]) < 0.02
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        [[34, 152, 24], [299, 722, 158], [52, 266, 17]],  # a quarter that is loaded seems untouched
+        [[17, 203, 35], [253, 742, 377], [86, 473, 141]],  # all are loaded but one
+        [[18, 21, 20], [22, 310, 590], [19, 280, 700]],
+        [[20, 20, 21], [20, 24, 20], [20, 20, 600]],
+        [[0, 0, 0], [0, 300, 0], [0, 0, 0]],
+        [[0, 0, 1], [0, 1, 1], [0, 0, 0]],
+    ],
+)
+def test_a_press_on_three_by_three_cells_shows(values):
+    found = AboveNoise()(image_of(np.array(values, float)))
+    assert found.together > 3 or found.rise > 1.5
+    assert found.mask.values.flat[np.argmax(values)]
+
+
+@pytest.mark.parametrize(("shape", "missed"), [((3, 3), 0.15), ((3, 4), 0.02), ((4, 4), 0.02)])
+@pytest.mark.parametrize("peak", [100.0, 800.0])
+def test_few_plain_presses_on_few_cells_go_unseen(shape, missed, peak):
+    rng, step, unseen = np.random.default_rng(0), AboveNoise(), 0
+    y, x = (np.mgrid[: 8 * shape[0], : 8 * shape[1]] + 0.5) / 8
+    for _ in range(200):
+        radius = rng.uniform(0.7, 1.0)
+        row, column = rng.uniform(radius + 0.2, np.array(shape) - radius - 0.2)
+        disc = (y - row) ** 2 + (x - column) ** 2 < radius**2
+        load = disc.reshape(shape[0], 8, shape[1], 8).mean(axis=(1, 3))
+        uneven = np.exp(rng.normal(0.0, 0.1, shape))
+        found = step(image_of(np.rint(peak * load * uneven + rng.normal(20.0, 2.0, shape))))
+        unseen += not (found.together > 3 or found.rise > 1.5)
+    assert unseen <= missed * 200
+
+
 @pytest.mark.parametrize("valid", [None, [[True, True], [False, True]]])
 def test_four_cells_or_fewer_tell_no_noise(valid):
     image = image_of(np.array([[0.1, 0.0], [0.0, 2.0]]), None if valid is None else np.array(valid))

@@ -46,3 +46,13 @@ def test_offsets_of_noise_that_is_cut_off_are_no_press(noise):
     values = np.maximum(np.round(offset + rng.normal(0.0, noise, (200, 16, 12))), 0.0)
     found = resting_among_objects(values, "it").offset
     assert found == pytest.approx(np.maximum(offset, 0.0), abs=0.5 + 0.4 * noise)
+
+
+def test_frames_and_elements_that_are_not_read_tell_nothing():
+    values = walked_on(0.6, 100.0)
+    unread = np.full((80, 16, 12), np.nan)
+    found = resting_among_objects(np.concatenate([unread, values]), "it")
+    assert found.good.all()
+    assert not found.offset.any()
+    values[np.argsort(values.sum(axis=(1, 2)), kind="stable")[:50], 0, 0] = np.nan
+    assert not resting_among_objects(values, "it").offset.any()

@@ -74,7 +74,7 @@ def stack_of(
     rows, columns = reading.told.rows, reading.told.columns
     if array.ndim > 3:
         array = without_single_axes(array)
-    if array.ndim == 3 and axes != "known" and reading.told.shape != array.shape[1:]:
+    if array.ndim == 3 and axes != "known":
         _refuse_channels(reading, array, name, axes)
     if rows is not None and columns is not None:
         n_cells = rows * columns
@@ -214,10 +214,17 @@ def _of_equal_sides(reading: Reading, array: NDArray[Any]) -> NDArray[Any]:
 
 
 def _refuse_channels(reading: Reading, array: NDArray[Any], name: str, axes: Axes) -> None:
-    """Refuse a stack whose short last axis may be that of colours or channels of one frame."""
+    """Refuse a stack whose short last axis may be that of colours or channels of one frame.
+
+    Rows or columns that are told decide, if they are those of the matrices alone.
+    """
     n, rows, columns = shape = array.shape
-    colours = columns in (3, 4) and min(n, rows) > 4 and reading.told.shape is None
-    few = 1 < columns <= MOST_LAST and min(n, rows) >= FEWEST_BESIDE and axes == "asked"
+    told = reading.told
+    if told.agrees(rows, columns) and not told.agrees(n, rows):
+        return
+    alike = max(n, rows) <= LONGEST_UNTOLD * min(n, rows)
+    colours = columns in (3, 4) and min(n, rows) > 4 and told.shape is None
+    few = 1 < columns <= MOST_LAST and min(n, rows) >= FEWEST_BESIDE and alike and axes == "asked"
     if colours or (few and _axes_told(array) != "first"):
         raise DataError(
             str(reading.path),

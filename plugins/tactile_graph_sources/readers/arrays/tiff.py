@@ -118,12 +118,16 @@ def _without_samples(where: str, page: Any, picture: NDArray[Any]) -> NDArray[An
 
 
 def _as_white_says(reading: Reading, where: str, page: Any, matrix: NDArray[Any]) -> NDArray[Any]:
-    """Return a page with white as its largest value where it is stored as 0; it is told."""
+    """Return a page with white as its largest value where it is stored as 0; it is told.
+
+    Of one bit it stays as it is: masks are written so, on or off, whatever white is said to be.
+    """
     if page.photometric != WHITE_IS_ZERO:
         return matrix
-    reading.assume("grey values turned round, as the TIFF says that 0 is white")
     if matrix.dtype.kind == "b":
-        return ~matrix
+        reading.assume("1 bit a pixel taken as it is, though the TIFF says that 0 is white")
+        return matrix
+    reading.assume("grey values turned round, as the TIFF says that 0 is white")
     if matrix.dtype.kind != "u":
         raise DataError(
             where,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from dataclasses import replace
 from math import isqrt
@@ -22,6 +21,7 @@ from tactile_graph_sources.readers.tables.evidence import (
 from tactile_graph_sources.readers.tables.extra import without_extra
 from tactile_graph_sources.readers.tables.frame_shape import shape_of_cells
 from tactile_graph_sources.readers.tables.layout import Layout, assumed_unit
+from tactile_graph_sources.readers.tables.nameless import are_nameless
 from tactile_graph_sources.readers.tables.table import ENDLESS, Table
 from tactile_graph_sources.readers.words.moments import clock_s
 from tactile_graph_sources.readers.words.told import Told
@@ -32,8 +32,6 @@ MOST_COLUMNS_UNTOLD, MOST_LINES_UNTOLD = 63, 256
 LEAST_FRAMED = 16
 """Values of a line that may be a frame by how they lie together."""
 FEWEST_NAMED, CELL_AND_VALUE = 4, 2
-_OF_COLUMN = re.compile(r"\d*|[AB]?[A-Z]")
-"""What a column is called that has no name, as a spreadsheet's."""
 LONGEST_UNTOLD = 4
 """Times its breadth: a matrix longer than that is more likely many frames."""
 
@@ -276,10 +274,10 @@ def _by_numbers(table: Table, base: Layout, n: int) -> tuple[str, int, str]:
 
 
 def _names_of_cells(table: Table, base: Layout) -> list[str]:
-    """Return the names of the columns of cells; none where they are numbered or lettered."""
+    """Return the names of the columns of cells; none where they are nameless."""
     said = table.named.names
     names = [said[k] for k in base.cells] if said and len(base.cells) > 1 else []
-    return [] if all(map(_OF_COLUMN.fullmatch, names)) else names
+    return [] if are_nameless(names) else names
 
 
 def _flat(base: Layout, table: Table, told: Told, width: int, why: str) -> Layout:

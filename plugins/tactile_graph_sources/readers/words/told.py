@@ -123,6 +123,10 @@ class Told:
         """Return the settings with a shape that the file says where they say none."""
         return replace(self, rows=self.rows or rows, columns=self.columns or columns)
 
+    def agrees(self, rows: int, columns: int) -> bool:
+        """Return whether frames may have this shape, by either or both."""
+        return self.rows in (None, rows) and self.columns in (None, columns)
+
     def fits(self, n_values: int) -> tuple[int, int] | None:
         """Return rows and columns of so many values, by either or both; None where none fit."""
         rows = self.rows or n_values // (self.columns or 1)

@@ -87,6 +87,15 @@ def test_white_that_is_stored_as_nothing_is_the_largest_value(tmp_path: Path) ->
         frames_of(tiff(tmp_path, GREY.astype("i2"), photometric="miniswhite"))
 
 
+def test_masks_of_one_bit_are_on_where_they_were_written_so(tmp_path: Path) -> None:
+    mask = GREY % 7 < 3
+    for photometric in (None, "miniswhite", "minisblack"):  # by itself tifffile says the first
+        frames, report = frames_of(tiff(tmp_path, np.stack([mask] * 3), photometric=photometric))
+        np.testing.assert_array_equal([f.image.values for f in frames], [mask] * 3)
+        told = f"{SAID}1 bit a pixel taken as it is, though the TIFF says that 0 is white"
+        assert report.counts[told] == (photometric != "minisblack")
+
+
 @pytest.mark.parametrize(("way", "orientation"), list(enumerate([2, 3, 4, 5, 6, 7, 8])))
 @pytest.mark.parametrize("kind", ["png", "tiff"])
 def test_pictures_are_turned_upright(kind: str, way: int, orientation: int, tmp_path: Path) -> None:

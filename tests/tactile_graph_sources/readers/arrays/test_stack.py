@@ -67,6 +67,29 @@ def test_a_short_last_axis_is_asked_about_as_channels(n: int, tmp_path: Path) ->
     assert not any("assumed to lie" in what for what in report.counts)
 
 
+@pytest.mark.parametrize("shape", [(200, 16, 2), (200, 6, 2), (200, 12, 5)])
+def test_many_frames_of_few_columns_are_no_picture_of_channels(
+    shape: tuple[int, int, int], tmp_path: Path
+) -> None:
+    noise = np.random.default_rng(0).normal(20, 1, shape)
+    n, rows, columns = shape
+    frames, report = frames_of(write(tmp_path, npy_bytes(noise)))
+    np.testing.assert_array_equal([f.image.values for f in frames], noise)
+    told = f"recordings with frames assumed to lie along the first axis, {n} of {rows} x {columns}"
+    assert report.counts[told] == 1
+
+
+@pytest.mark.parametrize("columns", [2, 3, 5])
+def test_rows_or_columns_alone_tell_frames_from_channels(columns: int, tmp_path: Path) -> None:
+    noise = np.random.default_rng(0).normal(20, 1, (40, 16, columns))
+    path = write(tmp_path, npy_bytes(noise))
+    for told in ({"rows": 16}, {"columns": columns}):
+        assert [f.image.shape for f in frames_of(path, **told)[0]] == [(16, columns)] * 40
+    for told in ({}, {"rows": 40}, {"columns": 16}):
+        with pytest.raises(DataError, match=f"picture of {columns} colours or channels"):
+            frames_of(path, **told)
+
+
 @pytest.mark.parametrize(
     ("shape", "words"),
     [

@@ -39,6 +39,41 @@ def test_columns_of_a_spreadsheet_have_no_names(first: str, tmp_path: Path) -> N
     ]
 
 
+@pytest.mark.parametrize("shape", [(16, 16), (8, 12)])
+@pytest.mark.parametrize(
+    "name", ["V{}", "Var{}", "Column{}", "column_{}", "c{}", "col{}", "COL{}", "x{}", "Unnamed: {}"]
+)
+@pytest.mark.parametrize("first", [0, 1])
+def test_columns_that_programs_count_up_have_no_names(
+    shape: tuple[int, int], name: str, first: int, tmp_path: Path
+) -> None:
+    n, width = shape
+    names = [name.format(first + k) for k in range(width)]
+    frames, report = frames_of(table(tmp_path, RNG.normal(220, 1, shape), names))
+    assert [f.image.shape for f in frames] == [shape]
+    told = f"recordings with {n} lines of {width} values assumed to be the rows of one matrix"
+    assert report.counts[told] == 1
+
+
+@pytest.mark.parametrize(("names", "asked"), [("abcdefgh", False), ("abcdefgk", True)])
+def test_columns_by_the_letters_in_order_have_no_names(
+    names: str, asked: bool, tmp_path: Path
+) -> None:
+    path = table(tmp_path, RNG.normal(220, 1, (8, 8)), [*names])
+    if asked:
+        with pytest.raises(DataError, match=r"its columns have names \(a, b, …\)"):
+            frames_of(path)
+    else:
+        assert [f.image.shape for f in frames_of(path)[0]] == [(8, 8)]
+
+
+@pytest.mark.parametrize("numbers", [[*range(11), 12], [*range(11, -1, -1)]])
+def test_columns_out_of_count_have_names(numbers: list[int], tmp_path: Path) -> None:
+    path = table(tmp_path, RNG.normal(220, 1, (12, 12)), [f"V{k}" for k in numbers])
+    with pytest.raises(DataError, match="12 lines of 12 values could be one matrix or"):
+        frames_of(path)
+
+
 @pytest.mark.parametrize("settings", [{}, {"rows": 16, "columns": 3}])
 @pytest.mark.parametrize(
     ("name", "axes"), [("r{}c{}_{}", "xyz"), ("s{}{}_{}", ["fx", "fy", "fz"]), ("p{}_{}{}", "xy")]
