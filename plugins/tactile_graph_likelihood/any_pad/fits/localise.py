@@ -8,31 +8,25 @@ from functools import cached_property
 
 import numpy as np
 
-from tactile_graph_likelihood.any_pad.fits.left_open import (
-    FEW,
-)
-from tactile_graph_likelihood.any_pad.fits.pressure_chances import (
-    FOAM,
-)
+from tactile_graph_likelihood.any_pad.fits.left_open import FEW
+from tactile_graph_likelihood.any_pad.fits.pressure_chances import FOAM
 from tactile_graph_likelihood.any_pad.fits.second_climbs import (
     among_strays,
     around_clump,
     beyond_the_edge,
 )
-from tactile_graph_likelihood.any_pad.fits.two_pressures import CLEARLY, LEAN, PARTS, under_two
-from tactile_graph_likelihood.any_pad.fits.waist import gain_by_two
+from tactile_graph_likelihood.any_pad.fits.two_pressures import CLEARLY
+from tactile_graph_likelihood.any_pad.fits.under_pressures import UnderPressures
 from tactile_graph_likelihood.any_pad.observation.clump import without_alone
 from tactile_graph_likelihood.any_pad.observation.learned_pad import unevenness_left
 from tactile_graph_likelihood.any_pad.pad_effects.from_frame import (
     LAW,
-    is_partly_hidden,
-    room_on_pad,
     strays_beyond,
     variance_inflation,
 )
 from tactile_graph_likelihood.any_pad.pad_effects.gap import sized, without_gap
 from tactile_graph_likelihood.any_pad.pad_effects.hollow import without_hollow
-from tactile_graph_likelihood.any_pad.pad_effects.through_foam import has_no_foam, without_foam
+from tactile_graph_likelihood.any_pad.pad_effects.through_foam import without_foam
 from tactile_graph_likelihood.any_pad.pad_effects.turn_on import (
     SURE,
     chance_of_a_bend,
@@ -40,32 +34,19 @@ from tactile_graph_likelihood.any_pad.pad_effects.turn_on import (
     unbent,
 )
 from tactile_graph_likelihood.any_pad.pad_effects.unheld import unheld
-from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, sizes, unknowns
+from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
 from tactile_graph_likelihood.settings import LocateSettings
 from tactile_graph_likelihood.single.any_pressure import (
-    CLEAR,
     EVEN,
-    FIRST,
-    NARROWER,
-    OWN,
     RISE,
-    WIDER,
-    Pattern,
     asked_by,
 )
 from tactile_graph_likelihood.single.changed import changed
 from tactile_graph_likelihood.single.climbs.search import SAME
-from tactile_graph_likelihood.single.density.element_terms import OVER, UNKNOWN
-from tactile_graph_likelihood.single.model import EVERY, MORE, SECOND, Likeliest, Model
+from tactile_graph_likelihood.single.density.element_terms import UNKNOWN
+from tactile_graph_likelihood.single.model import EVERY, MORE, SECOND, Likeliest
 from tactile_graph_likelihood.single.noise import LEAST_SIGMA, Noise
 from tactile_graph_likelihood.single.readings import Readings
-from tactile_graph_likelihood.single.sampling.sample import beyond_the_pad
-
-FAINT = Pattern(1.0, 0.4, 2.5, 1.5)
-"""From which on another pressure is worth its time; where a quick answer will do, it is `CLEAR`."""
-
-SHARPER = 0.6
-"""As `FAINT`, the fall of a rectangle: its own shape tells more of that."""
 
 MANY = 8.0
 """Times what is told of strays from which on an outline is searched for anew, knowing of them."""
@@ -73,36 +54,22 @@ MANY = 8.0
 THINNEST = 0.12
 """Half of a rectangle's breadth in pitches, at least, where nothing else is told: a book's edge."""
 
-NEAR_EDGE = 0.25
-"""Pitches before the pad's edge within which a side may as well be cut off by it."""
-
-LEANING_WHOLE = 0.9
-"""Of outlines that lean and end near the pad's edge, the share that lies on it whole, at most: what
-is cut off leans more often than not, as a plate does that its other half pulls down."""
-
-SATURATED = 0.1
-"""Of what is touched, the share that reads the most from which on a pad saturates."""
-
-STRANGE, FEW_STRAYS = -1.5, 2e-3
-"""Surprise from which on an even face's readings are rather foam's, whatever pattern they leave;
-and the share of strays beyond its outline up to which these are not what is unlikely."""
-
 
 @dataclass(frozen=True)
-class AnyPad:
+class AnyPad(UnderPressures):
     """Fits of an outline that take law, gains, voids, strays and pressure from the frame itself.
 
     Parameters
     ----------
     told : Model
         An outline on the pad as told: the middle of every guess.
-    law : float
-        As in `learned`; 0 where gains were learned, since readings then scatter as these are good.
     quick : bool
         Whether no fit is sampled, but one with an angle that reaches over the pad's edge: each
         stands for itself as a normal distribution, an even face's with the law's exponent, and
         other pressures are looked at where the pattern is clear. A fainter one widens the
         posterior. On small pads only: see `suited`.
+    law : float
+        As in `learned`; 0 where gains were learned, since readings then scatter as these are good.
     sampled_above_cm : float
         The deviation of its centre from which on a quick disc is sampled after all.
     unevened : AnyPad, optional
@@ -116,9 +83,7 @@ class AnyPad:
     pattern of. What they come to together, `posterior_around` tells.
     """
 
-    told: Model
     law: float = LAW
-    quick: bool = False
     sampled_above_cm: float = math.inf
     unevened: AnyPad | None = None
     foam_cm: float = 0.0
@@ -140,9 +105,9 @@ class AnyPad:
         above_cm = math.inf if settings.sampled_above_cm is None else settings.sampled_above_cm
         if sigma >= told.noise.sigma:
             its = changed(told, noise=noise)
-            return cls(its, LAW, settings.quick, above_cm, foam_cm=foam_cm)
-        plain = cls(told, LAW, settings.quick, above_cm, foam_cm=foam_cm)
-        return cls(changed(told, noise=noise), 0.0, settings.quick, above_cm, plain, foam_cm)
+            return cls(its, settings.quick, LAW, above_cm, foam_cm=foam_cm)
+        plain = cls(told, settings.quick, LAW, above_cm, foam_cm=foam_cm)
+        return cls(changed(told, noise=noise), settings.quick, 0.0, above_cm, plain, foam_cm)
 
     @cached_property
     def _of_wide(self) -> AnyPad:
@@ -155,32 +120,6 @@ class AnyPad:
         """
         wide = readings.is_wide
         return self._of_wide if wide and (self.quick or self.foam_cm > 0.0) else self
-
-    @cached_property
-    def _kept(self) -> dict[str, Model]:
-        return {}
-
-    def _fit(self, pressure: str) -> Model:
-        """Return the model that estimates sigma and voids with the outline, under a pressure."""
-        found = self._kept.get(pressure)
-        if found is None:
-            own = ["contrast"] if self.quick else []
-            parts = own if pressure == EVEN else PARTS.get(pressure, (pressure,))
-            found = self._kept[pressure] = self._search(self.told.noise, *parts, "sigma", "voids")
-        return found
-
-    @cached_property
-    def n_even(self) -> int:
-        """How many numbers an even face has on a pad whose noise is known."""
-        return unknowns.call(self.told.kind, self.told.corners) + 1
-
-    def _search(self, noise: Noise, *estimated: str) -> Model:
-        """Return a model that goes over the pad's edge, unless it must not, as if there were none.
-
-        Where the edge makes a step in the prior, a search would be caught before it.
-        """
-        whole = 1.0 if self.told.whole >= 1.0 else 0.0
-        return changed(self.told, noise=changed(noise, estimated=estimated), whole=whole)
 
     def first(self, readings: Readings) -> tuple[AnyPad, Readings, Likeliest]:
         """Return the even face's most likely outline as it is first found, and its readings.
@@ -219,14 +158,14 @@ class AnyPad:
         attempts. Not so where more than 4096 are touched, nor of an outline with an angle, which
         would rather be caught there.
         """
-        model, wide = self._fit(EVEN), readings.is_wide
+        model, wide = self.fit(EVEN), readings.is_wide
         some = None if wide or self.told.kind != DISC else without_alone(readings)
         if some is None or (rough := model.likeliest(some)).mode.height == -math.inf:
             return self, model.likeliest(readings)
         if not (strays := self.strays(readings, rough)):
             return self, self.near(readings, self.told.point_of(rough))
         its = self.knowing(strays)
-        model, near = its._fit(EVEN), its.near(readings, self.told.point_of(rough))
+        model, near = its.fit(EVEN), its.near(readings, self.told.point_of(rough))
         return its, among_strays(model, readings, model.likeliest(readings, near, attempts=SECOND))
 
     def cleared(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
@@ -237,10 +176,10 @@ class AnyPad:
         """
         if readings.is_wide or even.mode.height == -math.inf:
             return readings, even
-        readings, even = unheld(self._fit(EVEN), readings, even)
+        readings, even = unheld(self.fit(EVEN), readings, even)
         if (bare := unbent(readings)) is not None:
             readings, even = self._by_law(readings, even, *bare)
-        if self.foam_cm > 0.0 or asked_by([even.fit], [FOAM], self._faint):
+        if self.foam_cm > 0.0 or asked_by([even.fit], [FOAM], self.faint):
             its = without_foam(readings, self.foam_cm)
             if its is not None:
                 readings, even = its, self.near(its, self.told.point_of(even))
@@ -256,13 +195,13 @@ class AnyPad:
         As a face that presses with its rim tells it, where residuals rise to the rim and that is
         clearly likelier: such a rim looks as if it lay between elements.
         """
-        found, its = sized(self._fit(EVEN), readings, even)
-        if readings.gap is None or not self._rises(readings, even):
+        found, its = sized(self.fit(EVEN), readings, even)
+        if readings.gap is None or not self.rises(readings, even):
             return found, its
         bare = readings
         if not readings.gap.is_told:  # slivers that lie between elements hold such a fit fast
             bare = without_gap(readings)
-        other, rising = sized(self._fit(RISE), bare, self._pressed(RISE, bare, even))
+        other, rising = sized(self.fit(RISE), bare, self.pressed(RISE, bare, even))
         worth = variance_inflation(rising.fit.neighbours, readings.touched) ** 2
         if rising.evidence < its.evidence + CLEARLY * worth:
             return found, its
@@ -286,7 +225,7 @@ class AnyPad:
 
     def near(self, readings: Readings, point: Values | None = None) -> Likeliest:
         """Return the even face's most likely outline, as `Model.likeliest_near` finds it."""
-        return self._fit(EVEN).likeliest_near(readings, point)
+        return self.fit(EVEN).likeliest_near(readings, point)
 
     def searched(self, readings: Readings, near: Likeliest) -> Likeliest:
         """Return the same after all attempts that are worth their time.
@@ -294,8 +233,8 @@ class AnyPad:
         Where a quick answer will do, a first attempt that finds no more than ``near`` is the last.
         """
         if not self.quick:
-            return self._fit(EVEN).likeliest(readings, near, attempts=EVERY)
-        even = self._fit(EVEN).likeliest(readings, near)
+            return self.fit(EVEN).likeliest(readings, near, attempts=EVERY)
+        even = self.fit(EVEN).likeliest(readings, near)
         if -math.inf < even.mode.height <= near.mode.height + SAME:
             return even._replace(unsure=False)
         return self.sought(readings, even)
@@ -303,7 +242,7 @@ class AnyPad:
     def sought(self, readings: Readings, even: Likeliest) -> Likeliest:
         """Return the same after more attempts, where the first ones left that open."""
         more = even.unsure
-        return self._fit(EVEN).likeliest(readings, even, attempts=MORE) if more else even
+        return self.fit(EVEN).likeliest(readings, even, attempts=MORE) if more else even
 
     def strays(self, readings: Readings, even: Likeliest) -> float:
         """Return the share of strays beyond an outline, 0 unless it is far more than told."""
@@ -335,7 +274,7 @@ class AnyPad:
 
     def again(self, readings: Readings, even: Likeliest) -> Likeliest:
         """Return what is likelier, near an outline and elsewhere, now that strays are known."""
-        near, model = self.near(readings, self.told.point_of(even)), self._fit(EVEN)
+        near, model = self.near(readings, self.told.point_of(even)), self.fit(EVEN)
         wide = readings.is_wide
         if wide and not near.unsure:
             return near
@@ -359,7 +298,7 @@ class AnyPad:
         Degenerate
             If no outline of this kind is possible.
         """
-        wide, model = readings.is_wide, self._fit(EVEN)
+        wide, model = readings.is_wide, self.fit(EVEN)
         if not wide:
             even = self.sought(readings, even)
         if readings.touched <= FEW:
@@ -372,88 +311,5 @@ class AnyPad:
         elif wide and even.unsure:
             even = model.likeliest(readings, even, attempts=MORE)
         if not wide:
-            even = beyond_the_edge(its._fit(EVEN), readings, even)
-        found = {EVEN: even}
-        asked = [] if wide else asked_by([even.fit], self._others, self._least)
-        if RISE in asked and not self._rises(readings, even):
-            asked.remove(RISE)
-        if not wide and FOAM not in asked and its._is_strange(readings, even):
-            asked.append(FOAM)
-        if asked and "fall" not in asked and has_no_foam(readings):
-            asked = [part for part in asked if part != FOAM]  # that of own gains falls to the rim
-        hidden = bool(asked) and self.reaches_beyond(readings, even)
-        for part in asked:
-            if hidden and part != FOAM:
-                continue
-            top = its._pressed(part, readings, even)
-            if hidden and self.reaches_beyond(readings, top):
-                continue
-            if top.mode.height > -math.inf:
-                found[part] = top
-        if len(found) > 1 and not hidden and self.told.kind != RECTANGLE:
-            found |= under_two(its._fit, its.told.point_of, readings, found)
-        return found
-
-    def _rises(self, readings: Readings, even: Likeliest) -> bool:
-        """Return whether a face may press with its rim; where it saturates, its middle reads less.
-
-        A stiff rectangle's rise is no pressure of its own.
-        """
-        if self.told.kind == RECTANGLE or even.fit.fall > -self._least.rise:
-            return False
-        return bool(np.count_nonzero(readings.states == OVER) < SATURATED * readings.touched)
-
-    def _is_strange(self, readings: Readings, even: Likeliest) -> bool:
-        """Return whether an even face's readings are unlikely, and not for what lies beyond it."""
-        if self.told.kind == RECTANGLE or even.fit.surprise >= STRANGE:
-            return False
-        return strays_beyond(self.told, readings, self.told.point_of(even)) <= FEW_STRAYS
-
-    @property
-    def _others(self) -> dict[str, list[float]]:
-        """The pressures that are looked at alone; a stiff rectangle's rise is none of its own."""
-        return FIRST if self.told.kind == RECTANGLE else OWN
-
-    @property
-    def _least(self) -> Pattern:
-        return CLEAR if self.quick else self._faint
-
-    @cached_property
-    def _faint(self) -> Pattern:
-        return FAINT._replace(fall=SHARPER) if self.told.kind == RECTANGLE else FAINT
-
-    def gain_by_two(self, readings: Readings, even: Likeliest) -> float:
-        """Return `gain_by_two` of an even face's most likely outline, which is no disc."""
-        return gain_by_two.call(self._fit(EVEN).problem(readings), even.mode.p)
-
-    def reaches_beyond(self, readings: Readings, top: Likeliest) -> bool:
-        """Return whether a most likely outline is partly beyond the pad's edge.
-
-        Foam, which makes outlines too large, may be why.
-        """
-        return is_partly_hidden(self.told.kind, readings, self.told.point_of(top))
-
-    def beyond(self, part: str, readings: Readings, top: Likeliest) -> Values | None:
-        """Return the covariance by which sides beyond the pad's edge widen a top's outline.
-
-        None where they all lie well before it, and of a disc, whose arc tells of them.
-        """
-        kind = self.told.kind
-        if kind == DISC or readings.is_wide:
-            return None
-        if room_on_pad(kind, readings, self.told.point_of(top)) > NEAR_EDGE:
-            return None
-        whole = self.told.whole
-        if part == LEAN and whole < 1.0:
-            whole = min(whole, LEANING_WHOLE)
-        problem = changed(self._fit(part), whole=whole).problem(readings)
-        return beyond_the_pad.call(problem, top.mode.p, top.mode.root)
-
-    def _pressed(self, part: str, readings: Readings, even: Likeliest) -> Likeliest:
-        n, p = self.n_even, self.told.point_of(even)
-        begin = np.concatenate([p[:n], OWN[part], p[-2:]])
-        if part == "fall":
-            begin[2 : 2 + sizes.call(self.told.kind)] *= 1.0 + WIDER
-        elif part == RISE:
-            begin[2 : 2 + sizes.call(self.told.kind)] *= 1.0 - NARROWER
-        return self._fit(part).likeliest_near(readings, begin)
+            even = beyond_the_edge(its.fit(EVEN), readings, even)
+        return {EVEN: even} if wide else its.under_each(readings, even)

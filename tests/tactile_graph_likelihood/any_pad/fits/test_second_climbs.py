@@ -157,7 +157,7 @@ def test_a_disc_among_strays_is_begun_at_knowing_of_them_and_found_in_fewer_clim
         seen = observed(frame.image, STEPS["disc"]._pad, None)
         fits, even = any_pad.begun(seen)
         known.append(fits.told.noise.strays)
-        plain = fits._fit(EVEN).likeliest(seen)
+        plain = fits.fit(EVEN).likeliest(seen)
         likelier.append(even.mode.height - plain.mode.height)
     assert np.max(known) == pytest.approx(0.04, abs=0.03)
     assert np.mean(np.array(known) > any_pad.told.noise.strays) > 0.6
@@ -172,7 +172,7 @@ def test_without_strays_a_disc_is_begun_at_as_the_readings_have_it(kind):
     for frame in Bench(KINDS[kind], np.random.default_rng(2)).frames(24, "disc"):
         seen = observed(frame.image, STEPS["disc"]._pad, None)
         fits, even = any_pad.begun(seen)
-        plain = any_pad._fit(EVEN).likeliest(seen)
+        plain = any_pad.fit(EVEN).likeliest(seen)
         same.append(fits is any_pad and even.mode.height > plain.mode.height - 0.5)
     assert sum(same) >= 23
 
