@@ -45,7 +45,7 @@ def _is_clumped_plain(above: Values, free: Cells, means: Values, used: Cells, lo
         both = varied[lag:] & varied[:-lag]
         its = (free[lag:] & free[:-lag]).sum(axis=1)[both]
         common += float((apart[lag:] * apart[:-lag]).sum(axis=1)[both].sum())
-        chance += float((np.sqrt(spread[lag:] * spread[:-lag])[both] * its).sum())
+        chance += float((np.sqrt(spread[lag:]) * np.sqrt(spread[:-lag]))[both] @ its)
         pairs += float(its.sum())
     down = float((apart[used].sum(axis=0) ** 2).sum())
     down /= max(float((spread * n_free)[used].sum()), 1e-300)
@@ -80,7 +80,7 @@ def is_clumped(above, free, means, used, loud):  # type: ignore[no-untyped-def]
                 if free[i, j] and free[k, j]:
                     its += 1
                     common += (above[i, j] - means[i]) * (above[k, j] - means[k])
-            chance += math.sqrt(spread[i] * spread[k]) * its
+            chance += math.sqrt(spread[i]) * math.sqrt(spread[k]) * its
             pairs += its
         expected += spread[i] * n_frees[i] if used[i] else 0.0
         likely += shares[i] * (1.0 - shares[i]) * n_frees[i] if loud[i] else 0.0

@@ -39,11 +39,13 @@ STEEPEST, FAINTEST = 0.55, 0.9
 """How the scatter within loud rows may go with what they read, as a power of it, for it to be noise
 beside a shift: of clear shifts, and of such as hardly stand out of it, where what is cut off makes
 it go. Gains make it go by the first power."""
-CLEAR, FAINT, STARK = 2.5, 1.8, 11.0
+CLEAR, FAINT, STARK = 2.5, 1.8, 7.0
 """Times that scatter, that the loudest row's mean is of a clear shift, and of one that hardly is;
 and from which on it is none."""
 APART = 1.25
 """Times that what the louder rows read must be what the others do, for that power to be told."""
+LARGEST = 1e100
+"""Of readings whose squares and products are numbers."""
 MOST_BEYOND = 0.8
 """Of the readings above rest, the share that what is anywhere may leave over as loads."""
 
@@ -110,8 +112,10 @@ def _line_noise_plain(values: Values, known: Cells, rest: float, step: float) ->
     quiet = n - np.count_nonzero((above[loud] > 0.0).any(axis=0))
     if quiet > MOST_QUIET * n:
         return 0.0
-    reach = reach_of(np.sort(above[loud][counts[loud]]), step)
     top = float(above.max())
+    if top > LARGEST:
+        return 0.0
+    reach = reach_of(np.sort(above[loud][counts[loud]]), step)
     if reach == 0.0 or reach < top < LOADED * reach:
         return 0.0
     wide = np.pad(above > reach, 1)
@@ -169,6 +173,8 @@ def line_noise(values, known, rest, step):  # type: ignore[no-untyped-def]
                 if loud[i]:
                     its[m] = values[i, j] - rest
                     m += 1
+    if top > LARGEST:
+        return 0.0
     reach = reach_of(np.sort(its), step)
     if reach == 0.0 or reach < top < LOADED * reach:
         return 0.0

@@ -22,13 +22,9 @@ MANY_CELLS, LARGE_SHARE, LARGE_AREA = 0.25, 0.1, 0.5
 """Of all cells so many must count, and those that do not stand out make up so much of the total, or
 of the area where noise lies around zero, before it is told."""
 
-HALF = 0.5
-"""Of a footprint's load above rest, the least that all cells must come to for its centre to be
-theirs, less what those beside it read at rest."""
-
 SURELY = 0.25
 """Share of the cells beside a footprint, beyond half of them, that read more than zero where all of
-them rest above it; the fewer do, the more the centre is that of all cells less what they read."""
+them rest above it; between, the centre goes over from all cells' to the footprint's."""
 
 NOISE, NEARLY_ALL = 5.0, 0.9
 """Times the sum of all readings' sizes, over the root of their number, that a total must be for a
@@ -85,20 +81,16 @@ def measure(values, usable, above):  # type: ignore[no-untyped-def]
 def measure_within(values, usable, on, above):  # type: ignore[no-untyped-def]
     """Return what `measure` does, then number, sum and moments of those cells on a footprint.
 
-    Then the sums of the places (x, y, in cells) of all usable cells, how many there are, how many
-    of them lie beside the footprint, and how many of those read more than 0.
+    Then how many usable cells lie beside the footprint, and how many of those read more than 0.
     """
     n = total = peak = moment_x = moment_y = below = 0.0
     its_n = its = its_x = its_y = 0.0
-    all_x = all_y = n_all = n_beside = n_above = 0.0
+    n_beside = n_above = 0.0
     for i in range(values.shape[0]):
         for j in range(values.shape[1]):
             value = values[i, j]
             if not usable[i, j]:
                 continue
-            n_all += 1.0
-            all_x += j
-            all_y += i
             if not on[i, j]:
                 n_beside += 1.0
                 n_above += value > 0.0
@@ -115,39 +107,8 @@ def measure_within(values, usable, on, above):  # type: ignore[no-untyped-def]
                     its_y += i * value
             elif value < 0.0:
                 below += value
-    its_own = its_n, its, its_x, its_y
-    return (
-        n,
-        total,
-        peak,
-        moment_x,
-        moment_y,
-        below,
-        its_own,
-        (all_x, all_y, n_all, n_beside, n_above),
-    )
-
-
-def _less_rest(
-    rest: float,
-    every: tuple[float, float, float],
-    its_own: tuple[float, float, float, float],
-    places: tuple[float, float, float, float, float],
-) -> tuple[float, float]:
-    """Return the centre (x, y, in cells) of all cells less what they read at rest.
-
-    The surer those beside the footprint rest above zero, the more it is that of the footprint's.
-    Sum and moments of all cells, and the last two, are as of `measure_within`.
-    """
-    (total, moment_x, moment_y), (n, its, its_x, its_y) = every, its_own
-    all_x, all_y, n_all, n_beside, n_above = places
-    left = total - rest * n_all
-    share = min(n_above / n_beside - 0.5, SURELY) / SURELY
-    if share >= 1.0 or left < HALF * (its - rest * n):
-        return its_x / its, its_y / its
-    others = (1.0 - share) / left
-    x = others * (moment_x - rest * all_x) + share * its_x / its
-    return x, others * (moment_y - rest * all_y) + share * its_y / its
+    whole, its_own = (n, total, peak, moment_x, moment_y, below), (its_n, its, its_x, its_y)
+    return *whole, *its_own, n_beside, n_above
 
 
 def counts_cells_at_rest(image: Image, value: Load) -> str:
@@ -198,9 +159,9 @@ class LoadOf:
     of pads print: what an untouched cell reads is part of them, of which it is told.
 
     With a footprint the area is that of its cells, and the total still that of all cells. The
-    centre is of all cells less what those beside the footprint read at rest, which is their median;
-    where most of those do read something, or one of them less than zero, as of noise around it, it
-    is of the footprint's cells. What is below zero counts for the total then, too, so that noise
+    centre goes over from that of all cells to that of the footprint's where more than half of those
+    beside it read something at rest, or is the footprint's where one reads less than zero, as of
+    noise around it. What is below zero counts for the total then, too, so that noise
     adds nothing to it, and an image is loaded where its footprint is, or the total is more than
     noise sums up to.
     """
@@ -240,7 +201,8 @@ class LoadOf:
             if on.shape != values.shape:
                 require_same_shape(image=image, mask=mask)
             measured = measure_within(values, usable, on, self._above)
-            _, total, peak, moment_x, moment_y, below, (n, its, its_x, its_y), places = measured
+            _, total, peak, moment_x, moment_y, below, *its_own = measured
+            n, its, its_x, its_y, n_beside, n_above = its_own
             loaded, weight = total > 0.0, total
             around_zero = below < 0.0 and self._above <= 0.0
             if around_zero:
@@ -249,11 +211,10 @@ class LoadOf:
                 total += below
             if its > 0.0 and around_zero:
                 weight, moment_x, moment_y = its, its_x, its_y
-            elif its > 0.0 and self._above <= 0.0 and places[4] > 0.5 * places[3]:
-                rest = float(np.median(values[usable & ~on]))
-                moment_x, moment_y = _less_rest(
-                    rest, (total, moment_x, moment_y), (n, its, its_x, its_y), places
-                )
+            elif its > 0.0 and self._above <= 0.0 and n_above > 0.5 * n_beside:
+                share = min(n_above / n_beside - 0.5, SURELY) / SURELY
+                moment_x = (1.0 - share) * moment_x / weight + share * its_x / its
+                moment_y = (1.0 - share) * moment_y / weight + share * its_y / its
                 weight = 1.0
         if not math.isfinite(total + moment_x + moment_y):
             refuse_unbounded(image, "the load, or its moment")

@@ -154,7 +154,7 @@ def _of_few(image: Image, found: Found) -> Found:
     values = image.values if image.valid is None else image.values[image.valid]
     ordered = in_order(np.asarray(values, np.float64).ravel())
     is_told = least > 0.5 * least_step(ordered)
-    if is_told and count:
+    if (is_told and count) or not ordered.size:
         return found
     # Whole numbers are counts, whose noise no range may tell; at 0 they may be cut off, or a mask.
     step = 1.0 if ordered[0] != 0.0 and (ordered == np.rint(ordered)).all() else 0.0

@@ -60,14 +60,20 @@ def refuse_other(output: Output, of: Mapping[str, str]) -> None:
         told = f"is there, and {sidecar(output.name).name} does not say what it is made of"
     else:
         is_set = output.ending == FOLDER
-        now = {name: of[name] for name in OF_ALL_RUNS} if is_set else of
-        other = changed({n: d for n, d in before.items() if n in now} if is_set else before, now)
+        names = {*OF_ALL_RUNS, *_again(before, of)} if is_set else {*before, *of}
+        other = changed(*({n: d for n, d in its.items() if n in names} for its in (before, of)))
         if not other and (is_set or note.get("complete") is False):
             return
         told = f"is made of other content: {other}" if other else "was changed after it was written"
     raise UsageError(
         f"--resume: {output.name} {told}; name another file, or write it anew without --resume"
     )
+
+
+def _again(before: Mapping[str, str], now: Mapping[str, str]) -> set[str]:
+    """Return what must be as it was of the recordings that a data set was last given; else none."""
+    of = {name for name in (*before, *now) if name not in (*OF_ALL_RUNS, "options")}
+    return {"options"} if all(before.get(name) == now.get(name) for name in of) else set()
 
 
 def n_bytes(output: str) -> int:

@@ -98,3 +98,13 @@ def test_an_empty_file_is_written_over(folder: Path) -> None:
     (folder / "empty.csv").touch()
     assert run(folder, "empty.csv", "--resume").returncode == 0
     assert (folder / "empty.csv").stat().st_size
+
+
+def test_a_data_set_loses_no_frames_of_a_recording_that_it_holds(folder: Path) -> None:
+    assert run(folder, "ds/", "--frames", "8", "--resume").returncode == 0
+    before = content(folder, "ds")
+    again = run(folder, "ds/", "--frames", "3", "--resume")
+    assert (again.returncode, content(folder, "ds")) == (2, before)
+    assert "is made of other content: what is asked of it" in again.stderr
+    assert "is done already" in run(folder, "ds/", "--frames", "8", "--resume").stderr
+    assert run(folder, "ds/", "--frames", "3", "--resume", of="b.npz").returncode == 0
