@@ -103,6 +103,13 @@ def _without_samples(where: str, page: Any, picture: NDArray[Any]) -> NDArray[An
     if n == 1:
         return picture[..., 0]
     if page.photometric not in (WHITE_IS_ZERO, BLACK_IS_ZERO, PALETTE) and n > 2:
+        if page.planarconfig == APART and not (picture[..., :3] == picture[..., :1]).all():
+            raise DataError(
+                where,
+                f"the picture is in colours, as the TIFF says of its {n} planes, from which no "
+                "values can be had back; if they are frames, write them so: "
+                "tifffile.imwrite(…, photometric='minisblack')",
+            )
         return picture
     through = [k for k in page.extrasamples if int(k) in SHINES_THROUGH]
     grey = picture[..., : max(1, n - len(through))]
