@@ -45,7 +45,7 @@ def test_channels_of_a_tiff_are_refused_by_number(
 def test_colours_of_a_tiff_are_refused_however_they_lie(n_pages: int, tmp_path: Path) -> None:
     values = np.stack([GREY, GREY // 2, GREY // 3])
     values = values if n_pages == 1 else np.stack([values] * n_pages)
-    with pytest.raises(DataError, match="the picture is in colours.*minisblack"):
+    with pytest.raises(DataError, match=r"the picture is in colours.*minisblack"):
         frames_of(tiff(tmp_path, values, photometric="rgb", planarconfig="separate"))
 
 
