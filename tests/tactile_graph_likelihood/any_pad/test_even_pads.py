@@ -78,7 +78,7 @@ def test_where_readings_scatter_a_pads_own_gap_is_left_alone():
     for frame in frames_of("noise 0.2 mV", 6):
         readings, fits, even = begun(frame)
         assert readings.gap.is_told
-        assert sized(fits._fit(EVEN), readings, even) == (readings, even)
+        assert sized(fits.fit(EVEN), readings, even) == (readings, even)
 
 
 @many
@@ -90,7 +90,7 @@ def test_an_even_face_is_told_from_readings_that_a_limit_holds(kind, most, least
     for frame in frames_of(kind, 36):
         readings, fits, even = begun(frame)
         if readings.unheld is not None:
-            freed.append(unheld(fits._fit(EVEN), readings, even)[0].unheld is None)
+            freed.append(unheld(fits.fit(EVEN), readings, even)[0].unheld is None)
     assert len(freed) > 12
     assert least <= np.mean(freed) <= most
 
@@ -102,7 +102,7 @@ def test_a_face_with_voids_that_a_limit_holds_is_none_of_an_even_pad():
     for frame in (frame for pad in pads for frame in pad.frames(30)):
         readings, fits, even = begun(frame)
         if readings.unheld is not None:
-            freed.append(unheld(fits._fit(EVEN), readings, even)[0].unheld is None)
+            freed.append(unheld(fits.fit(EVEN), readings, even)[0].unheld is None)
     assert len(freed) > 12
     assert not any(freed)
 
@@ -111,7 +111,7 @@ def test_a_face_with_voids_that_a_limit_holds_is_none_of_an_even_pad():
 def test_readings_without_a_limit_are_as_they_were():
     readings, fits, even = begun(frames_of("noise 0.2 mV", 1)[0])
     assert readings.unheld is None
-    assert unheld(fits._fit(EVEN), readings, even) == (readings, even)
+    assert unheld(fits.fit(EVEN), readings, even) == (readings, even)
 
 
 @pytest.mark.parametrize("touched", [10, 60])
