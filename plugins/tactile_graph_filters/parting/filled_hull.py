@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.compiled import compiled_twin_of
+from tactile_graph_filters.parting.row_hull import hull_of, with_row
 
 RIM_CELLS = 0.4
 """Cells whose centre lies less deep in the hull are its rim: low readings are no surprise there."""
@@ -108,11 +109,7 @@ def misfit(owner, values, known, group, left, right, rules):  # type: ignore[no-
             continue
         top, bottom = min(top, i), i
         start, end = min(start, left[i]), max(end, right[i])
-        x[ends], y[ends] = left[i], i
-        ends += 1
-        if right[i] > left[i]:
-            x[ends], y[ends] = right[i], i
-            ends += 1
+        ends = with_row(x, y, ends, left[i], right[i], i)
         for j in range(left[i], right[i] + 1):
             held = owner[i, j]
             if held == group[0] or held == group[1] or held == group[2]:
@@ -121,18 +118,7 @@ def misfit(owner, values, known, group, left, right, rules):  # type: ignore[no-
     result = DOUBT * max(0.0, 1.0 - n / usual_cells) if usual_cells > 0 else 0.0
     if n < 3:
         return result
-    hx, hy = np.empty(2 * ends + 2), np.empty(2 * ends + 2)
-    m, floor = 0, 2
-    for step in range(2 * ends - 1):
-        k = step if step < ends else 2 * ends - 2 - step
-        if step == ends:
-            floor = m + 1
-        while m >= floor and (hx[m - 1] - hx[m - 2]) * (y[k] - hy[m - 2]) <= (
-            hy[m - 1] - hy[m - 2]
-        ) * (x[k] - hx[m - 2]):
-            m -= 1
-        hx[m], hy[m] = x[k], y[k]
-        m += 1
+    hx, hy, m = hull_of(x, y, ends)
     limit = weak * total / n
     for i in range(top, bottom + 1):
         for j in range(start, end + 1):

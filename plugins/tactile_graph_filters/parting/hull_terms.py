@@ -9,6 +9,7 @@ import numpy as np
 from tactile_graph.compiled import compiled_later
 from tactile_graph_filters.parting.filled_hull import RIM_CELLS
 from tactile_graph_filters.parting.partition import Owners, Partition, Reals
+from tactile_graph_filters.parting.row_hull import area_of, hull_of, with_row
 
 CELLS, LOGS, AREA, NOTCHES, WEAK, LONG = 0, 1, 2, 3, 4, 5
 """Places in the terms; see `hull_terms`."""
@@ -61,11 +62,7 @@ def hull_terms(cells: Partition, one: int, two: int, levels: Levels) -> Reals:
                 sum_x, sum_y = sum_x + j, sum_y + i
                 sum_xx, sum_xy, sum_yy = sum_xx + j * j, sum_xy + i * j, sum_yy + i * i
         if right >= 0:
-            x[ends], y[ends] = left, i
-            ends += 1
-            if right > left:
-                x[ends], y[ends] = right, i
-                ends += 1
+            ends = with_row(x, y, ends, left, right, i)
     n = terms[CELLS]
     if n < 3:
         return terms
@@ -110,42 +107,8 @@ def hull_area(owner: Owners, group: int) -> float:
                 left, right = min(left, j), j
                 n += 1
         if right >= 0:
-            x[ends], y[ends] = left, i
-            ends += 1
-            if right > left:
-                x[ends], y[ends] = right, i
-                ends += 1
+            ends = with_row(x, y, ends, left, right, i)
     if n < 3:
         return 0.0
     hull_x, hull_y, m = hull_of(x, y, ends)
     return area_of(hull_x, hull_y, m)
-
-
-@compiled_later
-def area_of(hull_x: Reals, hull_y: Reals, m: int) -> float:
-    """Return the area within a closed hull of so many points."""
-    area = 0.0
-    for k in range(m - 1):
-        area += 0.5 * (hull_x[k] * hull_y[k + 1] - hull_x[k + 1] * hull_y[k])
-    return abs(area)
-
-
-@compiled_later
-def hull_of(x: Reals, y: Reals, ends: int) -> tuple[Reals, Reals, int]:
-    """Return the closed hull of the first and last cell of each row, and its number of points.
-
-    ``x`` and ``y`` hold columns and rows of the ``ends``, row by row, from left to right.
-    """
-    hull_x, hull_y = np.empty(2 * ends + 2), np.empty(2 * ends + 2)
-    m, floor = 0, 2
-    for step in range(2 * ends - 1):
-        k = step if step < ends else 2 * ends - 2 - step
-        if step == ends:
-            floor = m + 1
-        while m >= floor and (hull_x[m - 1] - hull_x[m - 2]) * (y[k] - hull_y[m - 2]) <= (
-            hull_y[m - 1] - hull_y[m - 2]
-        ) * (x[k] - hull_x[m - 2]):
-            m -= 1
-        hull_x[m], hull_y[m] = x[k], y[k]
-        m += 1
-    return hull_x, hull_y, m

@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError
+from tactile_graph_pads.falling import MAD_TO_SIGMA
 from tactile_graph_pads.learning.pressed import often_pressed
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 LEAST_FRAMES = 5
 LEAST_FRAMES_WITH_OBJECTS = 10
-MAD_TO_SIGMA = 1.4826
-"""Of a normal distribution: standard deviation over median absolute deviation."""
 STANDS_OUT = 8.0
 """Spreads of the others by which an element's offset is unlike theirs."""
 LEAST_OBJECT = 4

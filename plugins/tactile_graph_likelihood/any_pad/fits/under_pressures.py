@@ -17,7 +17,7 @@ from tactile_graph_likelihood.any_pad.pad_effects.from_frame import (
     strays_beyond,
 )
 from tactile_graph_likelihood.any_pad.pad_effects.through_foam import has_no_foam
-from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values, sizes, unknowns
+from tactile_graph_likelihood.geometry.outlines import RECTANGLE, Values, sizes, unknowns
 from tactile_graph_likelihood.single.any_pressure import (
     CLEAR,
     EVEN,
@@ -169,12 +169,11 @@ class UnderPressures:
     def beyond(self, part: str, readings: Readings, top: Likeliest) -> Values | None:
         """Return the covariance by which sides beyond the pad's edge widen a top's outline.
 
-        None where they all lie well before it, and of a disc, whose arc tells of them.
+        None where they all lie well before it. Of no disc, whose arc tells of what is beyond.
         """
-        kind = self.told.kind
-        if kind == DISC or readings.is_wide:
+        if readings.is_wide:
             return None
-        if room_on_pad(kind, readings, self.told.point_of(top)) > NEAR_EDGE:
+        if room_on_pad(self.told.kind, readings, self.told.point_of(top)) > NEAR_EDGE:
             return None
         whole = self.told.whole
         if part == LEAN and whole < 1.0:
