@@ -25,6 +25,19 @@ if TYPE_CHECKING:
 OFFERS = "recording_writers"
 
 
+class Pitch(Finite):
+    """A pitch in cm: a number above 0, or two of them, of columns and of rows."""
+
+    def __init__(self) -> None:
+        super().__init__(min=0, min_open=True)
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        """Return the number, or both."""
+        x, comma, y = str(value).partition(",")
+        one = super().convert(x, param, ctx)
+        return (one, super().convert(y, param, ctx)) if comma else one
+
+
 @click.command()
 @click.argument(
     "recordings",
@@ -57,7 +70,8 @@ OFFERS = "recording_writers"
 )
 @click.option("--rows", type=click.IntRange(min=1), help="Rows, where the file cannot tell.")
 @click.option("--columns", type=click.IntRange(min=1), help="Columns, likewise.")
-@click.option("--pitch-cm", type=Finite(min=0, min_open=True), help="Pitch, likewise.")
+@click.option("--pitch-cm", metavar="FLOAT[,FLOAT]", type=Pitch(),
+              help="Pitch, likewise; 0.8,1.2 of columns and of rows.")  # fmt: skip
 @click.option("--quantity", help="What the values mean, likewise.")
 @click.option(
     "--truth",

@@ -35,6 +35,7 @@ LONGEST_REASON = 300
 MOST_REASONS = 10
 """Of one node, that differ in more than numbers: further ones are counted together."""
 OTHERWISE = "…"
+_DECIMAL = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _NUMBER = re.compile(r"0x[\da-f]+|[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?", re.I)
 READ_ONLY = "; what goes into and comes out of steps is read-only: change a copy"
 
@@ -132,6 +133,8 @@ class Tally:
     n_items_failed : int
     assumed : dict
         What a node took that nobody said, and in which frame first.
+    ranges : dict
+        By node, the least and the largest of the first numbers in what it took.
     noticed : dict
         By node, what it has to say of its answers.
     failed, skipped, not_finite : dict
@@ -154,6 +157,7 @@ class Tally:
     n_not_finite: int = 0
     n_items_failed: int = 0
     assumed: dict[str, tuple[str, int]] = field(default_factory=dict)
+    ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
     noticed: dict[str, _Noticed] = field(default_factory=dict)
     failed: dict[tuple[str, str], _Kept] = field(default_factory=dict)
     skipped: dict[tuple[str, str], _Kept] = field(default_factory=dict)
@@ -270,11 +274,23 @@ class Tally:
         """Note what nodes took that nobody said."""
         told = {i.name: assumed_by(result.outcome(i.name)) for i in result.plan.nodes}
         for name, text in told.items():
-            if text and name not in self.assumed:
+            if not text:
+                continue
+            if name in self.assumed:
+                self._widen(name, text)
+            else:
                 node = result.plan.pipeline.nodes[name]
                 refs = (*node.choices, *(ref for bound in node.inputs for ref in bound.refs))
                 if text not in {told.get(ref.node) for ref in refs}:  # else it was handed on
                     self.assumed[name] = (text, result.frame.index)
+                    self._widen(name, text)
+
+    def _widen(self, node: str, text: str) -> None:
+        """Note the number in what a node took, which may be another in each frame."""
+        if (found := _DECIMAL.search(text)) is not None:
+            number = float(found[0])
+            low, high = self.ranges.get(node, (number, number))
+            self.ranges[node] = (min(low, number), max(high, number))
 
     def _noticed(self, result: Result) -> None:
         """Note what steps had to say beside their values."""
@@ -325,6 +341,9 @@ class Tally:
             setattr(self, name, getattr(self, name) + getattr(later, name))
         for node, told in later.assumed.items():
             self.assumed.setdefault(node, told)
+        for node, (low, high) in later.ranges.items():
+            least, most = self.ranges.get(node, (low, high))
+            self.ranges[node] = (min(low, least), max(high, most))
         _join(self.noticed, later.noticed)
         for key, kept in later.failed.items():
             _join(self.failed, {self._place(key): kept})
@@ -338,6 +357,7 @@ class Tally:
         """Return all of it as plain data, which `of_kept` makes a tally of again."""
         data: dict[str, Any] = {name: getattr(self, name) for name in COUNTS}
         data["assumed"] = {node: [*told] for node, told in self.assumed.items()}
+        data["ranges"] = {node: [*told] for node, told in self.ranges.items()}
         data["noticed"] = {node: astuple(n) for node, n in self.noticed.items()}
         for name in ("failed", "skipped", "not_finite"):
             data[name] = [[*key, *astuple(k)] for key, k in getattr(self, name).items()]
@@ -352,6 +372,7 @@ class Tally:
         """Return the tally that plain data tell of."""
         tally = cls(outputs, **{name: data[name] for name in COUNTS})
         tally.assumed = {node: (text, frame) for node, (text, frame) in data["assumed"].items()}
+        tally.ranges = {node: (low, high) for node, (low, high) in data.get("ranges", {}).items()}
         tally.noticed = {node: _Noticed(*n) for node, n in data["noticed"].items()}
         for name in ("failed", "skipped", "not_finite"):
             rows = {(a, b): _Kept(t, tuple(item), *n) for a, b, t, item, *n in data[name]}
@@ -395,7 +416,9 @@ class Tally:
             text = f"{key} {_times(kept)}: {kept.text}, which is no answer"
             yield _labelled("strange", "red", text)
         for node, (told, frame) in self.assumed.items():
-            yield _labelled("assumed", "cyan", f"{node}: {told} (in frame {frame})")
+            low, high = self.ranges.get(node, (0.0, 0.0))
+            others = f"; {low:g} to {high:g} in the frames looked at" if low < high else ""
+            yield _labelled("assumed", "cyan", f"{node}: {told} (in frame {frame}{others})")
         for node, found in self.noticed.items():
             if found.usual:
                 yield _labelled("notice", "yellow", f"{node}: {found.text} ({found.times})")

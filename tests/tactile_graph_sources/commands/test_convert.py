@@ -98,6 +98,30 @@ def test_a_table_and_back_with_what_it_cannot_say_told(tmp_path: Path, made: lis
         assert a.image.pitch_cm == b.image.pitch_cm
 
 
+def test_a_pitch_is_told_of_both_sides_or_of_each(tmp_path: Path, made: list[Frame]) -> None:
+    run(tmp_path / "a.npz", tmp_path / "b.npz", "--pitch-cm", "0.8,1.2")
+    first = next(iter(recording(path=tmp_path / "b.npz", report=Report())))
+    assert first.image.pitch_cm == (0.8, 1.2)
+
+
+@pytest.mark.parametrize(
+    ("pitch", "message"),
+    [
+        ("0.8,", "'' is not a valid float"),
+        ("1,2,3", "'2,3' is not a valid float"),
+        ("0.8,0", "0.0 is not in the range x>0"),
+        ("0.8,nan", "must be a finite number in the range x>0, got nan"),
+    ],
+)
+def test_a_pitch_of_other_than_one_or_two_lengths_is_refused(
+    tmp_path: Path, made: list[Frame], pitch: str, message: str
+) -> None:
+    told = [str(tmp_path / "a.npz"), str(tmp_path / "b.npz"), "--pitch-cm", pitch]
+    result = CliRunner().invoke(convert, told)
+    assert result.exit_code == 2
+    assert f"Invalid value for '--pitch-cm': {message}" in result.output
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("step_s", [1.0, None])
 def test_a_table_of_three_decimals_or_none_is_read_again(

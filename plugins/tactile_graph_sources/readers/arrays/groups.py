@@ -170,6 +170,8 @@ def held_in(reading: Reading, group: Group) -> Held:
     else:
         times, time = _worded_times(reading, group)
     attributes = {**attributes_of(group.root), **attributes_of(numbers[name])}
+    if packed[name].said:  # its factor is applied
+        attributes.pop("scale_factor", None)
     attributes |= _values_beside(group)
     said = described_by(attributes)
     what = f"{group.word} {name!r}"

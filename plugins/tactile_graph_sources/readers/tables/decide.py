@@ -224,10 +224,12 @@ def _units(table: Table) -> set[str]:
 
 
 def _strange_unit(base: Layout, table: Table) -> tuple[str, ...]:
-    """Return the note on a unit of all values that stands for no known quantity."""
+    """Return the notes on words before the table, and on a unit that is of no known quantity."""
     units = _units(table)
     unit = units.pop() if len(units) == 1 else ""
-    return taken_as_they_are(unit) if unit and base.said.quantity == "raw" else base.said.notes
+    if not unit or base.said.quantity != "raw":
+        return base.said.notes
+    return *taken_as_they_are(unit), *base.said.told
 
 
 def _in_unit(base: Layout, table: Table) -> Layout:

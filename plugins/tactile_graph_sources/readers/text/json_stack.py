@@ -396,7 +396,8 @@ def _of_object(where: str, content: dict[str, Any], sensor: str | None) -> Entri
     inner = entries_of(where, lists[key], sensor)
     said = _said(content)
     if said == Described():
-        said = replace(inner.said, strange_unit=said.strange_unit or inner.said.strange_unit)
+        unit, told = said.strange_unit or inner.said.strange_unit, (*said.told, *inner.said.told)
+        said = replace(inner.said, strange_unit=unit, told=told)
     if inner.times is None and times is not None and len(times) == len(inner.values):
         return inner._replace(times=times, time_name=time, said=said, why=f"{key!r}: {inner.why}")
     return inner._replace(said=said, why=f"{key!r}: {inner.why}")

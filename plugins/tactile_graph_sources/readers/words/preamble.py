@@ -11,16 +11,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.quantities import is_quantity
+from tactile_graph_sources.readers.words.pitches import (
+    PITCH_WORDS,
+    SaidPitch,
+    lengths_cm,
+    pitch_of,
+)
+from tactile_graph_sources.readers.words.rates import frame_seconds
 from tactile_graph_sources.readers.words.units import (
     UNIT_WORDS,
-    length_cm,
     taken_as_they_are,
     value_unit,
     without_length_unit,
 )
 
 PAIRS = ("pitch_cm", "origin_cm")
-_PAIR = re.compile(r"[\s#%/\"']*([^:=;,\t]{1,40}?)\s*[:=;,\t]+\s*\"?(.*?)[\s\",;]*")
+_PAIR = re.compile(r"[\s#%/\"']*([^:=;,\t]{1,40}?)\s*([:=;,\t]+)\s*(\"?)(.*?)[\s\",;]*")
 _WORDS = {
     "rows": {"rows", "row", "zeilen", "reihen", "lignes", "filas", "righe", "number of rows",
              "n rows", "num rows", "nrows"},
@@ -28,10 +34,10 @@ _WORDS = {
                 "number of columns", "n cols", "num cols", "num columns", "ncols"},
     "shape": {"shape", "size", "matrix", "grid", "resolution", "dimensions", "sensor size",
               "größe", "matriz", "matrice", "taille", "array"},
-    "pitch": {"pitch", "spacing", "cell size", "sensel size", "sensel width",
-              "cell width", "raster", "rastermaß", "pas", "paso", "passo",
-              "element pitch", "cell pitch", "sensor pitch"},
+    "pitch": frozenset(PITCH_WORDS),
     "unit": UNIT_WORDS,
+    "scale": {"scale factor", "scaling factor", "scale", "scaling", "skalierung",
+              "skalierungsfaktor"},
     "quantity": {"quantity"},
     "rate": {"rate", "frame rate", "sampling rate", "sample rate", "frequency", "fps", "fs",
              "sampling frequency", "scanning rate", "sample rate hz", "rate hz", "abtastrate",
@@ -39,6 +45,8 @@ _WORDS = {
 }  # fmt: skip
 _MEANING = {word: key for key, words in _WORDS.items() for word in words}
 _SHAPE = re.compile(r"\D*?(\d{1,5})\s*(?:x|×|\*|,|by|mal)\s*(\d{1,5})\b.*", re.IGNORECASE)
+_LONGEST = 100
+"""Of what is said of pitch and rate: longer texts are something else."""
 _NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?")
 
 
@@ -55,6 +63,8 @@ class Described:
     origin_cm: tuple[float, float] | None = None
     strange_unit: str = field(default="", compare=False)
     """A unit that stands for no known quantity."""
+    told: tuple[str, ...] = field(default=(), compare=False)
+    """What is left out of it, or taken without being said."""
 
     def in_unit(self, unit: str) -> Described:
         """Return what is said with a unit of the values; one not known takes back no quantity."""
@@ -65,8 +75,9 @@ class Described:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is told of values that nobody says the quantity of."""
-        return taken_as_they_are(self.strange_unit) if self.quantity == "raw" else ()
+        """What is told of it, and of values that nobody says the quantity of."""
+        strange = taken_as_they_are(self.strange_unit) if self.quantity == "raw" else ()
+        return *strange, *self.told
 
 
 def described_by(named: Mapping[str, Any]) -> Described:
@@ -102,7 +113,7 @@ def _plain(value: Any) -> Any:
 
 def described(lines: Iterable[str]) -> Described:
     """Return what the lines before a table say of its shape, pitch, unit and rate."""
-    said = Described()
+    said, pitches = Described(), list[SaidPitch]()
     for line in lines:
         found = _PAIR.fullmatch(line)
         if found is None:
@@ -110,14 +121,35 @@ def described(lines: Iterable[str]) -> Described:
         key, _, unit = found[1].strip().lower().replace("_", " ").partition("[")
         key, _, other = key.partition("(")
         bare, length = without_length_unit(key.strip())
-        meaning = _MEANING.get(bare)
-        if meaning is not None:
-            said = _take(said, meaning, found[2], (unit or other).strip(" ])") or length)
-    return said
+        meaning, unit = _MEANING.get(bare), (unit or other).strip(" ])") or length
+        if meaning == "pitch":
+            in_fields = found[2] == "," and not found[3]
+            lengths = lengths_cm(found[4][:_LONGEST], unit, in_fields)
+            pitches.append(SaidPitch(_shown(found), bare, lengths))
+        elif meaning is not None:
+            said = _take(said, meaning, found[4], unit)
+            said = replace(said, told=(*said.told, *_unread(said, meaning, found)))
+    pitch, notes = pitch_of(pitches)
+    return replace(said, pitch_cm=pitch, told=(*said.told, *notes))
+
+
+def _shown(found: re.Match[str]) -> str:
+    return f"{found[1].strip()}: {found[4][:_LONGEST]}"
+
+
+def _unread(said: Described, meaning: str, found: re.Match[str]) -> tuple[str, ...]:
+    """Return what is told of a line that says something which is not followed."""
+    first = _NUMBER.match(found[4])
+    number = float(first[0].replace(",", ".")) if first else 0.0
+    if meaning == "rate" and number and said.frame_s is None:
+        return (f"{_shown(found)!r} left out, as it is no rate that is understood (such as 50 Hz)",)
+    if meaning == "scale" and number not in (0.0, 1.0):
+        remedy = f"the step gain with elements: [[{1.0 / number:g}]] does it"
+        return (f"{_shown(found)!r} not applied to the values; {remedy}",)
+    return ()
 
 
 def _take(said: Described, meaning: str, value: str, unit: str) -> Described:
-    number = _NUMBER.match(value)
     if meaning in ("rows", "columns"):
         n = int(value) if value.isdecimal() and 0 < int(value[:9]) < 10**5 else None
         if n is None:
@@ -126,9 +158,6 @@ def _take(said: Described, meaning: str, value: str, unit: str) -> Described:
     if meaning == "shape":
         found = _SHAPE.fullmatch(value)
         return said if found is None else replace(said, rows=int(found[1]), columns=int(found[2]))
-    if meaning == "pitch":
-        pitch = length_cm(value, unit)
-        return said if pitch is None else replace(said, pitch_cm=(pitch, pitch))
     if meaning == "unit":
         return said.in_unit(value)
     if meaning == "quantity":
@@ -136,5 +165,5 @@ def _take(said: Described, meaning: str, value: str, unit: str) -> Described:
         if quantity in ("raw", said.quantity):  # a unit of it has told its factor, too
             return said
         return replace(said, quantity=quantity, factor=factor)
-    rate = float(number[0].replace(",", ".")) if number else 0.0
-    return replace(said, frame_s=1.0 / rate) if 0.0 < rate < 1e6 else said
+    frame_s = frame_seconds(value[:_LONGEST], unit) if meaning == "rate" else None
+    return replace(said, frame_s=frame_s) if frame_s and frame_s > 1e-6 else said

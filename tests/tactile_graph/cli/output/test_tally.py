@@ -360,6 +360,34 @@ def test_what_was_assumed_is_told_of_the_node_that_did_and_of_none_that_hands_it
     ]
 
 
+def by_reading(image: Image) -> Assuming:
+    return Assuming(1.0, f"x is {image.values.max():g}")
+
+
+def test_of_what_was_assumed_anew_in_each_frame_the_range_is_told(
+    hand_made: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install(monkeypatch, hand_made, steps={"by_reading": by_reading})
+    (hand_made / "r.txt").write_text("2.5\n0.5\n40\n")
+    (hand_made / "p.yaml").write_text(
+        "{pipeline: p, nodes: {a: {step: by_reading, in: frame}}, outputs: [a]}"
+    )
+    told = "assumed  a: x is 2.5 (in frame 0; 0.5 to 40 in the frames looked at)"
+    got = call("run", "p.yaml", "r.txt", "-o", "out.jsonl")
+    assert got.exit_code == 0
+    assert [x for x in got.stderr.splitlines() if x.startswith("assumed")] == [told]
+
+
+def test_the_ranges_of_parts_are_joined() -> None:
+    parts = []
+    for k, low in enumerate((2.5, -1.0)):
+        part = Tally([], assumed={"a": (f"x is {low:g}", k)}, ranges={"a": (low, 40.0 + k)})
+        parts.append(Tally.of_kept([], json.loads(json.dumps(part.kept()))))
+    parts[0].join(parts[1])
+    assert parts[0].assumed == {"a": ("x is 2.5", 0)}
+    assert parts[0].ranges == {"a": (-1.0, 41.0)}
+
+
 @dataclass
 class Columnless:
     x_cm: float

@@ -55,6 +55,7 @@ def test_packed_values_and_times_are_unpacked_and_told(tmp_path: Path) -> None:
     frames, report = frames_of(hdf5(tmp_path, _FillValue=np.int16(-32768), **ABOUT))
     check(frames)
     assert report.counts["recordings with values unpacked, as the file says: numbers x 0.1 + 5"]
+    assert not [what for what in report.counts if "not applied" in what]
 
 
 @pytest.mark.slow

@@ -529,3 +529,15 @@ def test_a_damaged_stamp_of_a_counter_moves_no_later_time(tmp_path: Path) -> Non
     frames, _ = frames_of(path, rows=2, columns=3)
     times = [f.time_s for f in frames]
     assert [*times[:6], *times[7:]] == pytest.approx([4100 + 0.02 * k for k in range(12) if k != 6])
+
+
+@pytest.mark.parametrize("text", [flat_text, stacked_text, long_text])
+def test_words_before_a_table_say_two_pitches_and_a_rate_and_what_is_not_read_is_told(
+    tmp_path: Path, text: Callable[[np.ndarray], str]
+) -> None:
+    head = "Pitch: 8 mm x 12 mm\nSampling rate: 0.5 kHz\nScale factor: 0.1\n\n"
+    frames, report = frames_of(write(tmp_path, head + text(VALUES)), rows=8, columns=8)
+    assert frames[0].image.pitch_cm == pytest.approx((0.8, 1.2))
+    assert any("'Scale factor: 0.1' not applied" in what for what in report.counts)
+    if text is stacked_text:
+        assert [f.time_s for f in frames[:2]] == pytest.approx([0.0, 0.002])

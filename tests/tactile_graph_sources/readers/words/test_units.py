@@ -51,6 +51,7 @@ def test_units_that_are_no_pressure_are_raw(text: str) -> None:
         ("N / cm^ 2", 10.0),
         (r"N/cm\xb2", 10.0),
         ("PSI", 6.894757293),
+        ("lbs/in²", 6.894757293),
         ("lbf/in2", 6.894757293),
         ("kgf/cm^2", 98.0665),
         ("gf/cm²", 0.0980665),
