@@ -24,6 +24,12 @@ import numpy as np
 
 from tactile_graph.errors import one_of
 from tactile_graph_sources.readers.tables.axes_named import axes_question
+from tactile_graph_sources.readers.tables.blanks import (
+    as_wide_as_told,
+    blank_rows,
+    may_have_blank_rows,
+    of_empty_columns,
+)
 from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import counts_up, spacing
@@ -75,7 +81,15 @@ def layout_of(
         return Layout("unclear", trouble=str(error))
     if table is None:
         return None
+    shape = told.with_said(table.said.rows, table.said.columns)
+    notes: tuple[str, ...] = ()
+    if may_have_blank_rows(table):
+        table, notes = _with_blank_rows(table, shape, lines, told, names)
+    table, question = as_wide_as_told(table, shape)
     base = Layout("unclear", table.dialect, table.width, table.first_line, said=table.said)
+    base = replace(base, n_fields=table.n_fields if table.padded else 0, assumed=notes)
+    if question:
+        return replace(base, trouble=question)
     try:
         table, sensor = of_one_sensor(table, told)
     except NoneNamedError as error:
@@ -107,8 +121,8 @@ def layout_of(
     if roles.get("time") is not None:
         base = timed(base, table)
     base = replace(base, time_format=told.of_columns.time_format or base.time_format)
-    n_told = (told.rows or 0) * (told.columns or 0)
-    empty = () if table.width in (n_told, told.columns) else table.empty
+    n_told = (shape.rows or 0) * (shape.columns or 0)
+    empty = () if table.width in (n_told, shape.columns) else table.empty
     apart = {*roles.values(), *table.labels, *table.dates, *empty}
     apart |= {base.unit[0]} if base.unit else set()
     cells = table.named.cells or tuple(k for k in range(table.width) if k not in apart)
@@ -120,8 +134,21 @@ def layout_of(
         return None
     if table.named.places:
         return _placed(base, table, told)
-    told = told.with_said(table.said.rows, table.said.columns)
-    return unplaced(base, table, told)
+    layout = unplaced(base, table, shape)
+    if layout.kind != "stacked" or shape.columns is not None:
+        return layout
+    return replace(layout, assumed=(*layout.assumed, *of_empty_columns(table, len(empty))))
+
+
+def _with_blank_rows(
+    table: Table, shape: Told, lines: Sequence[str], told: Told, names: Sequence[str]
+) -> tuple[Table, tuple[str, ...]]:
+    """Return the table with its lines of separators alone as what they are, and the note on it."""
+    padded = table_of(lines, told.of_columns, table.whole, names, padded=True)
+    if padded is None:
+        return table, ()
+    are_rows, notes = blank_rows(table, padded, shape)
+    return (padded if are_rows else table), notes
 
 
 # -- columns by their names --------------------------------------------------------------------

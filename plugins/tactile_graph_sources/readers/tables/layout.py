@@ -52,6 +52,8 @@ class Layout:
         Signatures of other lines that do.
     header_line : str
         The line that numbers the columns of a matrix; empty without one.
+    n_fields : int
+        Of a line of separators alone that is a row without a value; 0 where it is a blank line.
     time_factor : float
         From the column of time to seconds.
     part : (int, float), optional
@@ -98,6 +100,7 @@ class Layout:
     blank_run: int = 1
     breaks: frozenset[str] = frozenset()
     header_line: str = ""
+    n_fields: int = 0
     time_factor: float = 1.0
     part: tuple[int, float] | None = None
     date: int | None = None
