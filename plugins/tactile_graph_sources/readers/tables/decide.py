@@ -35,6 +35,7 @@ from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import counts_up, spacing
 from tactile_graph_sources.readers.tables.layout import Layout, days_of, several_units, timed
 from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
+from tactile_graph_sources.readers.tables.sides import of_several, of_side, side_of, sides_of
 from tactile_graph_sources.readers.tables.table import Table, table_of
 from tactile_graph_sources.readers.words.counter import runs_over
 from tactile_graph_sources.readers.words.dialect import unquoted
@@ -75,6 +76,25 @@ def layout_of(
     """
     if lines and lines[0].lstrip().lower().startswith(_MARKED_UP):
         return None
+    sides = sides_of(lines)
+    if not sides or (len(sides) == 1 and whole):
+        return _layout_of(lines, told, whole, names)
+    asked, first = side_of(told.sensor), next(iter(sides.values()))
+    if asked is None and len(sides) > 1:
+        both = tuple(side.name for side in sides.values())
+        there = f"no sensor {told.sensor!r}; " if told.sensor else ""
+        return Layout("unclear", trouble=there + of_several(both), sensors=both)
+    side = first._replace(alone=True) if asked is None else asked
+    known = side if side.which in sides else first
+    mine = [line for _, line in of_side(enumerate(lines), known._replace(alone=False), "")]
+    layout = _layout_of(mine, told, whole, names)
+    return None if layout is None else replace(layout, side=side)
+
+
+def _layout_of(
+    lines: Sequence[str], told: Told, whole: bool, names: Sequence[str]
+) -> Layout | None:
+    """Return what `layout_of` does of lines that are of one sensor, but for columns of others."""
     try:
         table = table_of(lines, told.of_columns, whole, names)
     except ValueError as error:

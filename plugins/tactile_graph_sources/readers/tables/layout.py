@@ -9,6 +9,7 @@ import numpy as np
 
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.tables.evidence import Numbers
+from tactile_graph_sources.readers.tables.sides import Side
 from tactile_graph_sources.readers.tables.table import Table
 from tactile_graph_sources.readers.words.compact import HHMMSS, are_hhmmss, stamps_s
 from tactile_graph_sources.readers.words.dialect import Dialect, unquoted
@@ -72,6 +73,8 @@ class Layout:
         ``row`` or ``column`` where the first lines lie in one of them alone; empty else.
     sensor : (int, str), optional
         The column that says which sensor a line is of, and the one that is read.
+    side : Side, optional
+        Which sections are read, where titles say left and right.
     others : tuple of (int, str)
         Columns of a long table that nothing is taken from, and their names.
     unit : (int, str), optional
@@ -111,6 +114,7 @@ class Layout:
     unit_cm: tuple[float, float] | None = None
     one_line: str = ""
     sensor: tuple[int, str] | None = None
+    side: Side | None = None
     others: tuple[tuple[int, str], ...] = ()
     unit: tuple[int, str] | None = None
     said: Described = field(default_factory=Described)

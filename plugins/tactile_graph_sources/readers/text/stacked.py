@@ -21,6 +21,7 @@ from tactile_graph_sources.readers.tables.breaks import (
     stamp_of,
 )
 from tactile_graph_sources.readers.tables.layout import Layout
+from tactile_graph_sources.readers.tables.sides import of_side
 from tactile_graph_sources.readers.tables.table import ENDLESS, is_blank, is_comment, is_padded
 from tactile_graph_sources.readers.words.dialect import floats, is_row, refuse_underscore
 
@@ -60,7 +61,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     reading.recognised(layout.why, layout.assumed)
     endless, matrix, blanks = layout.blank_run == ENDLESS, _Matrix(), 0
     times = _Times(layout)
-    for number, line in reading.text():
+    for number, line in of_side(reading.text(), layout.side, str(reading.path)):
         if is_blank(line) and not _is_blank_row(layout, line):
             blanks += 1
             continue
