@@ -34,6 +34,7 @@ from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import counts_up, spacing
 from tactile_graph_sources.readers.tables.layout import Layout, days_of, several_units, timed
+from tactile_graph_sources.readers.tables.positions import like_positions, pitch_cm
 from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
 from tactile_graph_sources.readers.tables.sides import of_several, of_side, side_of, sides_of
 from tactile_graph_sources.readers.tables.table import Table, table_of
@@ -108,6 +109,8 @@ def _layout_of(
     table, question = as_wide_as_told(table, shape)
     base = Layout("unclear", table.dialect, table.width, table.first_line, said=table.said)
     base = replace(base, n_fields=table.n_fields if table.padded else 0, assumed=notes)
+    if table.positions is not None:
+        base = _placed_apart(base, table.positions, told)
     if question:
         return replace(base, trouble=question)
     try:
@@ -144,6 +147,7 @@ def _layout_of(
     n_told = (shape.rows or 0) * (shape.columns or 0)
     empty = () if table.width in (n_told, shape.columns) else table.empty
     apart = {*roles.values(), *table.labels, *table.dates, *empty}
+    apart |= set() if table.positions is None else {0}
     apart |= {base.unit[0]} if base.unit else set()
     cells = table.named.cells or tuple(k for k in range(table.width) if k not in apart)
     read = {*cells, *roles.values(), *(() if date is None else (date,))}
@@ -155,9 +159,26 @@ def _layout_of(
     if table.named.places:
         return _placed(base, table, told)
     layout = unplaced(base, table, shape)
-    if layout.kind != "stacked" or shape.columns is not None:
+    if layout.kind != "stacked":
         return layout
-    return replace(layout, assumed=(*layout.assumed, *of_empty_columns(table, len(empty))))
+    n = len(table.rows) // layout.rows
+    matrices = table.rows[: n * layout.rows, list(layout.cells)]
+    matrices = matrices.reshape(n, layout.rows, len(layout.cells))
+    notes = tuple(filter(None, [like_positions(matrices)]))
+    if shape.columns is None:
+        notes += of_empty_columns(table, len(empty))
+    return replace(layout, assumed=(*layout.assumed, *notes))
+
+
+def _placed_apart(base: Layout, positions: tuple[float, float], told: Told) -> Layout:
+    """Return the layout with the pitch that positions beside the cells give, and the note on it."""
+    x, y = positions
+    note = f"positions beside the cells, {x:g} x {y:g} apart"
+    pitch = None if told.pitch_cm or base.said.pitch_cm else pitch_cm(positions)
+    if pitch is not None:
+        base = replace(base, said=replace(base.said, pitch_cm=pitch))
+        note = f"{note}, taken for mm (else give pitch_cm)"
+    return replace(base, assumed=(*base.assumed, note))
 
 
 def _with_blank_rows(

@@ -21,6 +21,7 @@ from tactile_graph_sources.readers.tables.breaks import (
     stamp_of,
 )
 from tactile_graph_sources.readers.tables.evidence import Numbers, as_numbers, is_count
+from tactile_graph_sources.readers.tables.positions import positions_of
 from tactile_graph_sources.readers.words.dialect import (
     ERRORS,
     MISSING,
@@ -96,6 +97,9 @@ class Table:
     padded : bool
         Whether lines of as many separators as rows have are rows, though they hold at most one
         number.
+    positions : (float, float), optional
+        How far apart columns and rows are by the header line and the first column, which are no
+        cells then.
     """
 
     dialect: Dialect
@@ -110,6 +114,7 @@ class Table:
     header_line: str = ""
     n_fields: int = 0
     padded: bool = False
+    positions: tuple[float, float] | None = None
 
     @cached_property
     def n_rows(self) -> int:
@@ -328,6 +333,11 @@ def table_of(
         if others:  # numbers that never change are readings
             header, header_line = tuple(full[0][1]), lines[start]
             full, start = others, others[0][0]
+    positions = None if header else positions_of([f for _, f in full])
+    if positions is not None:
+        header_line = lines[start]
+        full = [(k, f) for k, f in full if lines[k] != header_line]
+        start = full[0][0]
     sample = [tuple(f) for _, f in full[:_SAMPLED]]
     sample, numbers = _sound(sample)
     rest, words = tuple(lines[start:]), [line for line in lines[:start] if not is_blank(line)]
@@ -355,6 +365,7 @@ def table_of(
         header_line,
         n_fields,
         padded,
+        positions,
     )
 
 
