@@ -93,9 +93,11 @@ def of_empty_columns(table: Table, n_front: int) -> tuple[str, ...]:
 # -- rows --------------------------------------------------------------------------------------
 
 
-def may_have_blank_rows(table: Table) -> bool:
+def may_have_blank_rows(table: Table, lines: Sequence[str]) -> bool:
     """Return whether lines are of separators alone, or nearly, and have as many as the rows."""
-    return not table.named.cells and any(map(table.is_padded, table.lines[:_LOOKED_AT]))
+    before = lines[max(table.first_line - 2, 0) : table.first_line - 1]
+    looked_at = *before, *table.lines[:_LOOKED_AT]
+    return not table.named.cells and any(map(table.is_padded, looked_at))
 
 
 def blank_rows(table: Table, padded: Table, told: Told) -> tuple[bool, tuple[str, ...]]:
@@ -117,19 +119,23 @@ def blank_rows(table: Table, padded: Table, told: Told) -> tuple[bool, tuple[str
         if table.width >= told.rows * (told.columns or table.width + 1):
             return False, ()  # a frame a line
         return _has_rows(padded, told.rows) and not _has_rows(table, told.rows), ()
-    sizes, at = padded.groups[0], _blank_at(padded, padded.groups[0])
-    usual, n = Counter(sizes).most_common(1)[0]
-    alike = Counter(at).most_common(1)[0][1]
-    if len(sizes) < 2 or min(n, alike) < EVENLY * len(sizes) or max(sizes) > usual:
+    sizes, fewer, usual = padded.groups[0], _usual(table), _usual(padded)
+    taken = "lines of separators alone taken for"
+    if len(sizes) > 1 and (not _are_alike(padded, sizes) or fewer == usual or _are_times(padded)):
         return False, ()
-    if _are_times(padded) or _usual(table) == usual:
-        return False, ()
-    if _is_filled_up(padded) or _are_edges(padded):
-        note = f"lines of separators alone taken for blank ones (give rows={usual} if they are rows"
-        return False, (f"{note} without a value)",)
-    fewer = _usual(table)
-    note = "lines of separators alone taken for rows without a value"
-    return True, (f"{note} (give rows={fewer} if they are blank lines)",)
+    if len(sizes) == 1 and len(table.groups[0]) > 1:
+        return False, ()  # nothing else parts the matrices
+    if len(sizes) == 1 or _is_filled_up(padded) or _are_edges(padded):
+        return False, (f"{taken} blank ones (give rows={usual} if they are rows without a value)",)
+    return True, (f"{taken} rows without a value (give rows={fewer} if they are blank lines)",)
+
+
+def _are_alike(table: Table, sizes: Sequence[int]) -> bool:
+    """Return whether matrices are of one size, and the same rows of each are blank."""
+    whole = sizes if table.whole else sizes[:-1]  # the first lines end anywhere
+    counted = Counter(zip(whole, _blank_at(table, whole), strict=True))
+    (usual, _), n = counted.most_common(1)[0]
+    return n >= EVENLY * len(whole) and max(sizes) == usual
 
 
 def _usual(table: Table) -> int:

@@ -103,12 +103,12 @@ def _layout_of(
     if table is None:
         return None
     shape = told.with_said(table.said.rows, table.said.columns)
-    notes: tuple[str, ...] = ()
-    if may_have_blank_rows(table):
-        table, notes = _with_blank_rows(table, shape, lines, told, names)
+    of_blanks: tuple[str, ...] = ()
+    if may_have_blank_rows(table, lines):
+        table, of_blanks = _with_blank_rows(table, shape, lines, told, names)
     table, question = as_wide_as_told(table, shape)
     base = Layout("unclear", table.dialect, table.width, table.first_line, said=table.said)
-    base = replace(base, n_fields=table.n_fields if table.padded else 0, assumed=notes)
+    base = replace(base, n_fields=table.n_fields if table.padded else 0)
     if table.positions is not None:
         base = _placed_apart(base, table.positions, told)
     if question:
@@ -164,7 +164,7 @@ def _layout_of(
     n = len(table.rows) // layout.rows
     matrices = table.rows[: n * layout.rows, list(layout.cells)]
     matrices = matrices.reshape(n, layout.rows, len(layout.cells))
-    notes = tuple(filter(None, [like_positions(matrices)]))
+    notes = (*of_blanks, *filter(None, [like_positions(matrices)]))
     if shape.columns is None:
         notes += of_empty_columns(table, len(empty))
     return replace(layout, assumed=(*layout.assumed, *notes))

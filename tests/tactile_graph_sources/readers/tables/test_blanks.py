@@ -9,6 +9,7 @@ import pytest
 
 from helpers_recordings import frames_of, write
 from tactile_graph.errors import DataError
+from tactile_graph_sources.readers import head
 
 ROWS, COLUMNS = 6, 5
 LOADED = np.random.default_rng(0).uniform(50, 100, (5, ROWS, COLUMNS)).round(1)
@@ -92,6 +93,25 @@ def test_lines_of_separators_part_matrices(
     text = matrices(LOADED, ";", head).replace("\n\n", f"\n{foot}")
     told = check(write(tmp_path, text), LOADED, **settings)
     assert any(ALONE in one for one in told) is (is_open and not settings)
+
+
+def test_a_row_without_a_value_is_told_of_one_matrix_alone(tmp_path: Path) -> None:
+    frames = without([(0, j) for j in range(COLUMNS)])[:1]
+    path = write(tmp_path, matrices(frames))
+    told = check(path, frames[:, 1:])
+    assert f"recordings with {ALONE} blank ones (give rows=6 if they are rows without a value)" in (
+        told
+    )
+    check(path, frames, **TOLD)
+
+
+def test_the_last_of_the_first_lines_may_be_of_half_a_matrix(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    frames = without([(0, j) for j in range(COLUMNS)])
+    text = matrices(frames)
+    monkeypatch.setattr(head, "SAMPLE", text.index("Frame 2") - 20)
+    check(write(tmp_path, text), frames)
 
 
 @pytest.mark.parametrize(
