@@ -58,6 +58,7 @@ def recording(
     first_cell: Literal[0, 1] | None = None,
     invert_from: Finite | None = None,
     pad: str | dict[str, Any] | list[str | dict[str, Any]] | None = None,
+    missing: Finite | None = None,
     report: Report,
 ) -> Iterator[Annotated[Frame, Quantity(of="quantity")]]:
     """Frames of one or more recordings, whatever device or program wrote them.
@@ -107,6 +108,8 @@ def recording(
     pad : str, mapping or list of these, optional
         Pads or their YAML files. Recordings of as many rows and columns that say no pitch have that
         of the first such pad; those that can be of none of its grid are counted in the report.
+    missing : float, optional
+        The number, as it stands in the file, of cells that are missing: -1, 65535.
     report : Report
         Takes the format that was recognised, counters, troubles, the number of frames to expect
         and the files' digests.
@@ -136,6 +139,7 @@ def recording(
         skip=skip,
         first_cell=first_cell,
         pad=pad,
+        missing=missing,
     )
     index = n_places = 0
     for one, label in _files(path, report):
@@ -306,6 +310,8 @@ def _frames(reading: Reading, of: RecordingFormat) -> Iterator[Frame]:
         raise DataError(where, f"cannot be read: {error.strerror or error}") from error
     reading.check_unchanged()
     if n_frames:
+        if of.laid is None and reading.steady.told:  # frames in any order see but some of them
+            reading.assume(reading.steady.told)
         return
     if told.sensor and reading.sensors:
         near = did_you_mean(told.sensor, reading.sensors)

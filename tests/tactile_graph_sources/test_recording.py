@@ -65,7 +65,7 @@ def test_it_is_a_source_with_settings() -> None:
     assert names[:7] == ("path", "rows", "columns", "pitch_cm", "origin_cm", "quantity", "sensor")
     assert names[7:11] == ("order", "transpose", "flip", "skip")
     assert names[11:15] == ("frame_column", "time_column", "time_unit", "time_format")
-    assert names[15:] == ("value_column", "cells", "first_cell", "invert_from", "pad")
+    assert names[15:] == ("value_column", "cells", "first_cell", "invert_from", "pad", "missing")
 
 
 @pytest.mark.parametrize("name", FORMATS)

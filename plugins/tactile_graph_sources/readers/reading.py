@@ -19,6 +19,7 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.words.counter import runs_over
 from tactile_graph_sources.readers.words.filled import filling
 from tactile_graph_sources.readers.words.own_number import counted
+from tactile_graph_sources.readers.words.steady import Steady
 from tactile_graph_sources.readers.words.told import Told
 
 OF_TIMES = ("time_unit", "time_format")
@@ -63,6 +64,7 @@ class Reading:
         self._seen: dict[str, set[float]] = {}
         self._last: dict[str, float] = {}
         self._fresh: set[str] = set()
+        self.steady = Steady()
         self.is_own = False
         """Whether the project wrote the file, which says itself what cells are missing."""
         self.in_stacks = False
@@ -75,7 +77,7 @@ class Reading:
         """
         part = Reading(head, self.told, self.report, self.index, self.label)
         part.start, part.place, part.sensors = self.start, self.place, self.sensors
-        part._fresh, part._gaps = self._fresh, self._gaps
+        part._fresh, part._gaps, part.steady = self._fresh, self._gaps, self.steady
         return part
 
     def text(self) -> Iterator[tuple[int, str]]:
@@ -230,6 +232,10 @@ class Reading:
             if filled is not None:
                 good &= values != filled
                 self.assume(f"cells of {filled:g} taken for missing")
+            if self.told.missing is not None:
+                good &= values != self.told.missing
+            elif not self.steady.is_over:
+                self.steady.see(values)
             if factor != 1.0:
                 values *= factor
                 good &= np.abs(values) <= LARGEST
@@ -335,6 +341,12 @@ class Reading:
             values = np.array(values, dtype=np.float64)
             if not self.is_own and filling(values) is not None:
                 return None
+            if self.told.missing is not None and (values == self.told.missing).any():
+                return None
+            for frame in values:
+                if self.steady.is_over:
+                    break
+                self.steady.see(frame)
             if factor != 1.0:
                 values *= factor
         if not -LARGEST <= values.min() <= values.max() <= LARGEST:  # no NaN is

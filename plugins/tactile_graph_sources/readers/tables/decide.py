@@ -24,11 +24,19 @@ import numpy as np
 
 from tactile_graph.errors import one_of
 from tactile_graph_sources.readers.tables.axes_named import axes_question
+from tactile_graph_sources.readers.tables.blanks import (
+    as_wide_as_told,
+    blank_rows,
+    may_have_blank_rows,
+    of_empty_columns,
+)
 from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import counts_up, spacing
 from tactile_graph_sources.readers.tables.layout import Layout, days_of, several_units, timed
+from tactile_graph_sources.readers.tables.positions import like_positions, pitch_cm
 from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
+from tactile_graph_sources.readers.tables.sides import of_several, of_side, side_of, sides_of
 from tactile_graph_sources.readers.tables.table import Table, table_of
 from tactile_graph_sources.readers.words.counter import runs_over
 from tactile_graph_sources.readers.words.dialect import unquoted
@@ -69,13 +77,42 @@ def layout_of(
     """
     if lines and lines[0].lstrip().lower().startswith(_MARKED_UP):
         return None
+    sides = sides_of(lines)
+    if not sides or (len(sides) == 1 and whole):
+        return _layout_of(lines, told, whole, names)
+    asked, first = side_of(told.sensor), next(iter(sides.values()))
+    if asked is None and len(sides) > 1:
+        both = tuple(side.name for side in sides.values())
+        there = f"no sensor {told.sensor!r}; " if told.sensor else ""
+        return Layout("unclear", trouble=there + of_several(both), sensors=both)
+    side = first._replace(alone=True) if asked is None else asked
+    known = side if side.which in sides else first
+    mine = [line for _, line in of_side(enumerate(lines), known._replace(alone=False), "")]
+    layout = _layout_of(mine, told, whole, names)
+    return None if layout is None else replace(layout, side=side)
+
+
+def _layout_of(
+    lines: Sequence[str], told: Told, whole: bool, names: Sequence[str]
+) -> Layout | None:
+    """Return what `layout_of` does of lines that are of one sensor, but for columns of others."""
     try:
         table = table_of(lines, told.of_columns, whole, names)
     except ValueError as error:
         return Layout("unclear", trouble=str(error))
     if table is None:
         return None
+    shape = told.with_said(table.said.rows, table.said.columns)
+    of_blanks: tuple[str, ...] = ()
+    if may_have_blank_rows(table, lines):
+        table, of_blanks = _with_blank_rows(table, shape, lines, told, names)
+    table, question = as_wide_as_told(table, shape)
     base = Layout("unclear", table.dialect, table.width, table.first_line, said=table.said)
+    base = replace(base, n_fields=table.n_fields if table.padded else 0)
+    if table.positions is not None:
+        base = _placed_apart(base, table.positions, told)
+    if question:
+        return replace(base, trouble=question)
     try:
         table, sensor = of_one_sensor(table, told)
     except NoneNamedError as error:
@@ -107,9 +144,10 @@ def layout_of(
     if roles.get("time") is not None:
         base = timed(base, table)
     base = replace(base, time_format=told.of_columns.time_format or base.time_format)
-    n_told = (told.rows or 0) * (told.columns or 0)
-    empty = () if table.width in (n_told, told.columns) else table.empty
+    n_told = (shape.rows or 0) * (shape.columns or 0)
+    empty = () if table.width in (n_told, shape.columns) else table.empty
     apart = {*roles.values(), *table.labels, *table.dates, *empty}
+    apart |= set() if table.positions is None else {0}
     apart |= {base.unit[0]} if base.unit else set()
     cells = table.named.cells or tuple(k for k in range(table.width) if k not in apart)
     read = {*cells, *roles.values(), *(() if date is None else (date,))}
@@ -120,8 +158,38 @@ def layout_of(
         return None
     if table.named.places:
         return _placed(base, table, told)
-    told = told.with_said(table.said.rows, table.said.columns)
-    return unplaced(base, table, told)
+    layout = unplaced(base, table, shape)
+    if layout.kind != "stacked":
+        return layout
+    n = len(table.rows) // layout.rows
+    matrices = table.rows[: n * layout.rows, list(layout.cells)]
+    matrices = matrices.reshape(n, layout.rows, len(layout.cells))
+    notes = (*of_blanks, *filter(None, [like_positions(matrices)]))
+    if shape.columns is None:
+        notes += of_empty_columns(table, len(empty))
+    return replace(layout, assumed=(*layout.assumed, *notes))
+
+
+def _placed_apart(base: Layout, positions: tuple[float, float], told: Told) -> Layout:
+    """Return the layout with the pitch that positions beside the cells give, and the note on it."""
+    x, y = positions
+    note = f"positions beside the cells, {x:g} x {y:g} apart"
+    pitch = None if told.pitch_cm or base.said.pitch_cm else pitch_cm(positions)
+    if pitch is not None:
+        base = replace(base, said=replace(base.said, pitch_cm=pitch))
+        note = f"{note}, taken for mm (else give pitch_cm)"
+    return replace(base, assumed=(*base.assumed, note))
+
+
+def _with_blank_rows(
+    table: Table, shape: Told, lines: Sequence[str], told: Told, names: Sequence[str]
+) -> tuple[Table, tuple[str, ...]]:
+    """Return the table with its lines of separators alone as what they are, and the note on it."""
+    padded = table_of(lines, told.of_columns, table.whole, names, padded=True)
+    if padded is None:
+        return table, ()
+    are_rows, notes = blank_rows(table, padded, shape)
+    return (padded if are_rows else table), notes
 
 
 # -- columns by their names --------------------------------------------------------------------

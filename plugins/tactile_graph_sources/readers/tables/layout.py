@@ -9,6 +9,7 @@ import numpy as np
 
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers.tables.evidence import Numbers
+from tactile_graph_sources.readers.tables.sides import Side
 from tactile_graph_sources.readers.tables.table import Table
 from tactile_graph_sources.readers.words.compact import HHMMSS, are_hhmmss, stamps_s
 from tactile_graph_sources.readers.words.dialect import Dialect, unquoted
@@ -52,6 +53,8 @@ class Layout:
         Signatures of other lines that do.
     header_line : str
         The line that numbers the columns of a matrix; empty without one.
+    n_fields : int
+        Of a line of separators alone that is a row without a value; 0 where it is a blank line.
     time_factor : float
         From the column of time to seconds.
     part : (int, float), optional
@@ -70,6 +73,8 @@ class Layout:
         ``row`` or ``column`` where the first lines lie in one of them alone; empty else.
     sensor : (int, str), optional
         The column that says which sensor a line is of, and the one that is read.
+    side : Side, optional
+        Which sections are read, where titles say left and right.
     others : tuple of (int, str)
         Columns of a long table that nothing is taken from, and their names.
     unit : (int, str), optional
@@ -98,6 +103,7 @@ class Layout:
     blank_run: int = 1
     breaks: frozenset[str] = frozenset()
     header_line: str = ""
+    n_fields: int = 0
     time_factor: float = 1.0
     part: tuple[int, float] | None = None
     date: int | None = None
@@ -108,6 +114,7 @@ class Layout:
     unit_cm: tuple[float, float] | None = None
     one_line: str = ""
     sensor: tuple[int, str] | None = None
+    side: Side | None = None
     others: tuple[tuple[int, str], ...] = ()
     unit: tuple[int, str] | None = None
     said: Described = field(default_factory=Described)

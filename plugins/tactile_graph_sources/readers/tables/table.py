@@ -21,6 +21,7 @@ from tactile_graph_sources.readers.tables.breaks import (
     stamp_of,
 )
 from tactile_graph_sources.readers.tables.evidence import Numbers, as_numbers, is_count
+from tactile_graph_sources.readers.tables.positions import positions_of
 from tactile_graph_sources.readers.words.dialect import (
     ERRORS,
     MISSING,
@@ -91,6 +92,14 @@ class Table:
         Whether the file has no more lines.
     header_line : str
         The line that numbers the columns, which may stand above each matrix; empty without one.
+    n_fields : int
+        Usual number of fields of a line, with those that separators at its end leave empty.
+    padded : bool
+        Whether lines of as many separators as rows have are rows, though they hold at most one
+        number.
+    positions : (float, float), optional
+        How far apart columns and rows are by the header line and the first column, which are no
+        cells then.
     """
 
     dialect: Dialect
@@ -103,6 +112,9 @@ class Table:
     texts: tuple[tuple[str, ...], ...] = field(repr=False)
     whole: bool
     header_line: str = ""
+    n_fields: int = 0
+    padded: bool = False
+    positions: tuple[float, float] | None = None
 
     @cached_property
     def n_rows(self) -> int:
@@ -112,12 +124,24 @@ class Table:
     @cached_property
     def _are_rows(self) -> tuple[bool, ...]:
         return tuple(
-            is_row(line)
-            and not self._is_lone(line)
-            and not self._is_frame_line(line)
-            and line != self.header_line
+            (
+                is_row(line)
+                and not self._is_lone(line)
+                and not self._is_frame_line(line)
+                and line != self.header_line
+            )
+            or (self.padded and self.is_padded(line))
             for line in self.lines
         )
+
+    @property
+    def row_lines(self) -> list[str]:
+        """The first lines that are rows."""
+        return [x for x, one in zip(self.lines, self._are_rows, strict=True) if one]
+
+    def is_padded(self, line: str) -> bool:
+        """Return whether a line of as many separators as rows have holds at most one number."""
+        return is_padded(line, self.dialect, self.n_fields)
 
     def _is_frame_line(self, line: str) -> bool:
         """Return whether ``Frame 3;t;12,5`` opens a matrix: it has not as many fields as rows."""
@@ -138,7 +162,9 @@ class Table:
         if self.named.cells:
             return frozenset()
         kept = [
-            (x, one) for x, one in zip(self.lines, self._are_rows, strict=True) if not is_blank(x)
+            (x, one)
+            for x, one in zip(self.lines, self._are_rows, strict=True)
+            if one or not is_blank(x)
         ]
         return breaks_of([self.dialect.pointed(x) for x, _ in kept], [one for _, one in kept])
 
@@ -200,7 +226,7 @@ class Table:
         for run in (1, 2):
             groups, size, blanks = [], 0, 0
             for line, one in zip(self.lines, self._are_rows, strict=True):
-                if is_blank(line):
+                if not one and is_blank(line):
                     blanks += 1
                     continue
                 if (
@@ -236,8 +262,22 @@ class Table:
         return len(sizes) > 1 and len(set(sizes)) == len(sizes)
 
 
+def is_padded(line: str, dialect: Dialect, n_fields: int) -> bool:
+    """Return whether a line of so many fields holds at most one number."""
+    if dialect.separator is None or len(line) > n_fields + _LONGEST_NUMBER:
+        return False
+    held = _FIELD.findall(line)
+    if len(held) > 1 or not all(map(_is_number, held)):
+        return False
+    return len(dialect.fields(line)) == n_fields > 2
+
+
 def table_of(
-    lines: Sequence[str], told: ColumnsTold, whole: bool, names: Sequence[str] = ()
+    lines: Sequence[str],
+    told: ColumnsTold,
+    whole: bool,
+    names: Sequence[str] = (),
+    padded: bool = False,
 ) -> Table | None:
     """Return the parts of a table; None where the lines are none.
 
@@ -250,6 +290,8 @@ def table_of(
         Whether there are no more lines.
     names : sequence of str
         Of the columns, where each line says them.
+    padded : bool
+        Whether lines of as many separators as rows have are rows.
 
     Raises
     ------
@@ -267,12 +309,17 @@ def table_of(
     written = [line for _, line in rows[:200]]
     dialect = Dialect.of([x for x in written if not FRAME_LINE.fullmatch(x)] or written)
     fields = [(k, dialect.fields(line)) for k, line in rows[:2000]]
-    width = _width([f for _, f in fields])
-    full = [(k, f[:width]) for k, f in fields if len(f) >= width and not any(f[width:])]
+    width, n_fields = _width([f for _, f in fields])
+    full = _full(fields, width)
     if not width or not full:
         return None
-    if len(full) > 1 and width > 1 and not any(map(_is_number, full[0][1])):
-        full = full[1:]  # names with numbers in them look like a row
+    wide = max(
+        _named_width(dialect, lines[: full[0][0]], width, n_fields), _asked_width(told, n_fields)
+    )
+    if wide > width:
+        width, full = wide, _full(fields, wide)
+    if padded:
+        full = _with_padded(full, lines[:_LOOKED_AT], dialect, n_fields)
     start = full[0][0]
     content = sum(1 for x in lines[start:_LOOKED_AT] if not is_blank(x) and not is_comment(x))
     if 2 * sum(k >= start for k, _ in rows) < content or len(rows) * width < start:
@@ -286,6 +333,11 @@ def table_of(
         if others:  # numbers that never change are readings
             header, header_line = tuple(full[0][1]), lines[start]
             full, start = others, others[0][0]
+    positions = None if header else positions_of([f for _, f in full])
+    if positions is not None:
+        header_line = lines[start]
+        full = [(k, f) for k, f in full if lines[k] != header_line]
+        start = full[0][0]
     sample = [tuple(f) for _, f in full[:_SAMPLED]]
     sample, numbers = _sound(sample)
     rest, words = tuple(lines[start:]), [line for line in lines[:start] if not is_blank(line)]
@@ -311,6 +363,9 @@ def table_of(
         tuple(sample),
         whole,
         header_line,
+        n_fields,
+        padded,
+        positions,
     )
 
 
@@ -341,13 +396,52 @@ def _is_number(text: str) -> bool:
     return not math.isnan(_number(text))
 
 
-def _width(fields: Sequence[Sequence[str]]) -> int:
+def _full(fields: Sequence[tuple[int, list[str]]], width: int) -> list[tuple[int, list[str]]]:
+    """Return the rows that are whole, without what looks like one but holds names."""
+    full = [(k, f[:width]) for k, f in fields if len(f) >= width and not any(f[width:])]
+    if len(full) > 1 and width > 1 and not any(map(_is_number, full[0][1])):
+        return full[1:]  # names with numbers in them look like a row
+    return full
+
+
+def _with_padded(
+    full: Sequence[tuple[int, list[str]]], lines: Sequence[str], dialect: Dialect, n_fields: int
+) -> list[tuple[int, list[str]]]:
+    """Return the rows with those that hold nothing, also right before the first of them."""
+    width, first = len(full[0][1]), full[0][0]
+    while first and is_padded(lines[first - 1], dialect, n_fields):
+        first -= 1
+    found = dict(full)
+    for k in range(first, len(lines)):
+        if k not in found and is_padded(lines[k], dialect, n_fields):
+            found[k] = dialect.fields(lines[k])[:width]
+    return sorted(found.items())
+
+
+def _width(fields: Sequence[Sequence[str]]) -> tuple[int, int]:
+    """Return the usual number of fields, without those at the end that all lines leave empty."""
     usual = Counter(len(f) for f in fields).most_common(1)[0][0]
     alike = [f for f in fields if len(f) == usual]
     extra = 0
     while extra < usual and not any(f[usual - 1 - extra].strip() for f in alike):
         extra += 1
-    return usual - extra
+    return usual - extra, usual
+
+
+def _named_width(dialect: Dialect, before: Sequence[str], width: int, n_fields: int) -> int:
+    """Return the width with columns that hold nothing, as far as the header says they are cells."""
+    for wide in range(n_fields, width, -1):
+        header, _ = _header(dialect, before, wide)
+        if header and wide - 1 in named(header).cells:
+            return wide
+    return width
+
+
+def _asked_width(told: ColumnsTold, n_fields: int) -> int:
+    """Return up to which column the settings say cells by number."""
+    asked = [int(n[:7]) for n in re.findall(r"\d+", told.cells)]
+    by_number = re.fullmatch(r"[\d\s,-]*", told.cells) is not None
+    return min(max(asked, default=0), n_fields) if by_number else 0
 
 
 def _header(dialect: Dialect, before: Sequence[str], width: int) -> tuple[tuple[str, ...], str]:

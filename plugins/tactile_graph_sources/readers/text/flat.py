@@ -17,6 +17,7 @@ from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables import labview
 from tactile_graph_sources.readers.tables.layout import Layout, of_sensor, refuse_other_unit
+from tactile_graph_sources.readers.tables.sides import of_side
 from tactile_graph_sources.readers.tables.table import OWN, is_blank, is_comment
 from tactile_graph_sources.readers.text.stamps import Stamps
 from tactile_graph_sources.readers.words.dialect import floats, is_row, refuse_underscore
@@ -58,7 +59,7 @@ def read(reading: Reading) -> Iterator[Frame]:
     lines = _Lines(layout, shape, _picker(layout.cells), Stamps(reading, layout), own)
     reading.recognised(layout.why, layout.assumed)
     reading.report.expect(reading.count_bytes(b"\n"))
-    text = reading.text()
+    text = of_side(reading.text(), layout.side, str(reading.path))
     if labview.is_labview(reading.head.lines):
         text = labview.without_headers(text)
     for number, line in text:

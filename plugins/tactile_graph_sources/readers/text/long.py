@@ -15,6 +15,7 @@ from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import FEWEST_COUNTED, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.readers.tables.layout import Layout, of_sensor, refuse_other_unit
+from tactile_graph_sources.readers.tables.sides import of_side
 from tactile_graph_sources.readers.tables.table import is_blank, is_comment
 from tactile_graph_sources.readers.text.cell_places import (
     first_number,
@@ -249,7 +250,7 @@ def _gather(reading: Reading, layout: Layout) -> tuple[Cells, NDArray[np.intp]]:
     """Return frame, time (s), row, column and value of each cell, shape (N, 5), and its line."""
     text = (
         (number, line)
-        for number, line in reading.text()
+        for number, line in of_side(reading.text(), layout.side, str(reading.path))
         if number >= layout.first_line and of_sensor(layout, line)
     )
     stamps = Stamps(reading, layout)

@@ -21,7 +21,8 @@ from tactile_graph_sources.readers.tables.breaks import (
     stamp_of,
 )
 from tactile_graph_sources.readers.tables.layout import Layout
-from tactile_graph_sources.readers.tables.table import ENDLESS, is_blank, is_comment
+from tactile_graph_sources.readers.tables.sides import of_side
+from tactile_graph_sources.readers.tables.table import ENDLESS, is_blank, is_comment, is_padded
 from tactile_graph_sources.readers.words.dialect import floats, is_row, refuse_underscore
 
 _DAY_S = 86400.0
@@ -60,8 +61,8 @@ def read(reading: Reading) -> Iterator[Frame]:
     reading.recognised(layout.why, layout.assumed)
     endless, matrix, blanks = layout.blank_run == ENDLESS, _Matrix(), 0
     times = _Times(layout)
-    for number, line in reading.text():
-        if is_blank(line):
+    for number, line in of_side(reading.text(), layout.side, str(reading.path)):
+        if is_blank(line) and not _is_blank_row(layout, line):
             blanks += 1
             continue
         between, before = _is_between(layout, line), number < layout.first_line
@@ -102,6 +103,11 @@ class _Times:
         self._last = at
         self._first = at if self._first is None else self._first
         return round(at - self._first, 6)
+
+
+def _is_blank_row(layout: Layout, line: str) -> bool:
+    """Return whether a line of separators alone is a row without a value."""
+    return layout.n_fields > 0 and is_padded(line, layout.dialect, layout.n_fields)
 
 
 def _is_between(layout: Layout, line: str) -> bool:

@@ -40,7 +40,8 @@ class Told:
 
     ``order``, ``transpose`` and ``flip`` say how a frame's cells are turned once they are read,
     ``skip`` how many frames are left out in front, ``first_cell`` the number of the first row and
-    column where a table numbers them, ``pads`` what pad files say of their grids.
+    column where a table numbers them, ``pads`` what pad files say of their grids,
+    ``missing`` the number that stands for no reading.
     """
 
     rows: int | None = None
@@ -56,6 +57,7 @@ class Told:
     skip: int = 0
     first_cell: int | None = None
     pads: tuple[ToldGrid, ...] = ()
+    missing: float | None = None
 
     @classmethod
     def of(cls, columns_told: ColumnsTold = NOTHING_TOLD, **settings: Any) -> Told:
