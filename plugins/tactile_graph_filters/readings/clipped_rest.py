@@ -91,7 +91,7 @@ def cut_off_below(values: Values, usable: Cells, on: Cells) -> float:
     above = beside & (values > 0.0)
     live = beside & _beside(above)
     n_above, n_live = (int(np.count_nonzero(cells)) for cells in (above, live))
-    share = n_live / np.count_nonzero(beside)
+    share = n_live / max(int(np.count_nonzero(beside)), 1)
     if share < LIVE or not _is_share(n_above, n_live):
         return 0.0
     seen = values.ravel().compress(above.ravel())

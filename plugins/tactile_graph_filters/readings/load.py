@@ -116,7 +116,10 @@ def counts_cells_at_rest(image: Image, value: Load) -> str:
     """Return what to say where much of total or area is of cells that do not stand out; or empty.
 
     Of an area only where cells read less than zero: then noise lies around it, and is no load.
+    Where much of what they read was left out as noise that a device cuts off, that is told.
     """
+    if told := _leaves_out(image, value):
+        return told
     n_counted = value.contact_area_cm2 / image.cell_area_cm2
     valid = True if image.valid is None else image.valid
     many = MANY_CELLS * image.values.size
@@ -141,6 +144,23 @@ def counts_cells_at_rest(image: Image, value: Load) -> str:
     return (
         f"{share:.0%} of the {what} is of cells that do not stand out of the others, below "
         f"{level:.3g} {image.unit}{so}"
+    )
+
+
+def _leaves_out(image: Image, value: Load) -> str:
+    """Return what to say where a total has less by what a device seems to cut off below zero."""
+    values = np.ascontiguousarray(image.values, np.float64)
+    usable = np.ones(image.shape, np.bool_) if image.valid is None else image.valid
+    whole = float(values[usable].sum())
+    if value.total >= (1.0 - LARGE_SHARE) * whole or values[usable].min() < 0.0:
+        return ""
+    left = -cut_off_below(values, usable, (values >= noise_level(image)) & usable)
+    if left == 0.0 or abs(whole - left - value.total) > LARGE_SHARE * left:
+        return ""
+    return (
+        f"the total leaves out {left:.3g} {image.unit} that cells read as noise does where a "
+        "device cuts off what is below zero; without a footprint at the port 'mask' it is the sum "
+        "of all"
     )
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tactile_graph.wires import Image
 from tactile_graph_filters.readings.clipped_rest import cut_off_below
-from tactile_graph_filters.readings.load import Load, LoadOf
+from tactile_graph_filters.readings.load import Load, LoadOf, counts_cells_at_rest
 from tactile_graph_filters.thresholds.noise_level import noise_level
 
 SHAPE = (48, 18)
@@ -126,3 +126,15 @@ def test_pads_of_few_values_raise_nothing(n_values: int) -> None:
         among = np.append(rng.lognormal(0.0, 3.0, n_values - 1), 0.0)
         values = rng.choice(among, SHAPE)
         assert cut_off_below(values, ANYWHERE, values > among[0]) <= 0.0
+
+
+@pytest.mark.parametrize("press", [0.0, 30.0])
+def test_what_is_left_out_as_noise_is_told_and_by_what_it_is_counted(press: float) -> None:
+    values = np.random.default_rng(0).normal(0.0, 1.0, SHAPE)
+    values[2:8, 5:13] += press
+    image = Image(np.maximum(values, 0.0))
+    told = counts_cells_at_rest(image, load_of(image.values))
+    assert told.startswith("the total leaves out 3")
+    assert "without a footprint at the port 'mask' it is the sum of all" in told
+    for other in (LoadOf()(image), LoadOf(above=0.5)(image)):
+        assert "leaves out 3" not in counts_cells_at_rest(image, other)
