@@ -13,6 +13,7 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.nan import refuse_unbounded
+from tactile_graph_filters.readings.clipped_rest import cut_off_below, may_be_cut_off
 from tactile_graph_filters.thresholds.noise_level import noise_level
 
 NEWTON_PER_GRAM = 9.80665e-3
@@ -27,9 +28,9 @@ SURELY = 0.25
 them rest above it; between, the centre goes over from all cells' to the footprint's."""
 
 NOISE, NEARLY_ALL = 5.0, 0.9
-"""Times the sum of all readings' sizes, over the root of their number, that a total must be for a
-load that no footprint shows: four standard deviations of a sum of normal noise. On pads of few
-cells so much of it at least, as noise is hardly ever of one sign."""
+"""Times the sum of all valid readings' sizes, over the root of their number, that a total must be
+for a load that no footprint shows: four standard deviations of a sum of normal noise. On pads of
+few cells so much of it at least, as noise is hardly ever of one sign."""
 
 
 class Load(NamedTuple):
@@ -115,7 +116,10 @@ def counts_cells_at_rest(image: Image, value: Load) -> str:
     """Return what to say where much of total or area is of cells that do not stand out; or empty.
 
     Of an area only where cells read less than zero: then noise lies around it, and is no load.
+    Where much of what they read was left out as noise that a device cuts off, that is told.
     """
+    if told := _leaves_out(image, value):
+        return told
     n_counted = value.contact_area_cm2 / image.cell_area_cm2
     valid = True if image.valid is None else image.valid
     many = MANY_CELLS * image.values.size
@@ -143,6 +147,23 @@ def counts_cells_at_rest(image: Image, value: Load) -> str:
     )
 
 
+def _leaves_out(image: Image, value: Load) -> str:
+    """Return what to say where a total has less by what a device seems to cut off below zero."""
+    values = np.ascontiguousarray(image.values, np.float64)
+    usable = np.ones(image.shape, np.bool_) if image.valid is None else image.valid
+    whole = float(values[usable].sum())
+    if value.total >= (1.0 - LARGE_SHARE) * whole or values[usable].min() < 0.0:
+        return ""
+    left = -cut_off_below(values, usable, (values >= noise_level(image)) & usable)
+    if left == 0.0 or abs(whole - left - value.total) > LARGE_SHARE * left:
+        return ""
+    return (
+        f"the total leaves out {left:.3g} {image.unit} that cells read as noise does where a "
+        "device cuts off what is below zero; without a footprint at the port 'mask' it is the sum "
+        "of all"
+    )
+
+
 class LoadOf:
     """Return total load, force, contact area, peak and centre of pressure of the valid cells.
 
@@ -163,7 +184,8 @@ class LoadOf:
     beside it read something at rest, or is the footprint's where one reads less than zero, as of
     noise around it. What is below zero counts for the total then, too, so that noise
     adds nothing to it, and an image is loaded where its footprint is, or the total is more than
-    noise sums up to.
+    noise sums up to. Where a device cuts off what is below zero, and what reads more beside the
+    footprint is the other half of normal noise, it is as if it had not (`cut_off_below`).
     """
 
     stateless = True
@@ -193,6 +215,9 @@ class LoadOf:
         """
         values = np.ascontiguousarray(image.values, np.float64)
         usable = self._usable(image)
+        left_out = 0 if image.valid is None else int(np.count_nonzero(~image.valid))
+        if left_out == values.size > 0:
+            raise Degenerate("no cell of the image is valid, so its load is not known")
         if mask is None:
             n, total, peak, moment_x, moment_y, _ = measure(values, usable, self._above)
             loaded, weight = total > 0.0, total
@@ -204,9 +229,11 @@ class LoadOf:
             _, total, peak, moment_x, moment_y, below, *its_own = measured
             n, its, its_x, its_y, n_beside, n_above = its_own
             loaded, weight = total > 0.0, total
+            if below == 0.0 and self._above <= 0.0 and may_be_cut_off(n_above, n_beside, total):
+                below = cut_off_below(values, usable, on)
             around_zero = below < 0.0 and self._above <= 0.0
             if around_zero:
-                share = min(NOISE / math.sqrt(image.values.size), NEARLY_ALL)
+                share = min(NOISE / math.sqrt(values.size - left_out), NEARLY_ALL)
                 loaded = its > 0.0 or total + below > share * (total - below)
                 total += below
             if its > 0.0 and around_zero:
@@ -225,9 +252,6 @@ class LoadOf:
         else:
             x_cm = y_cm = None
         force_n = force_of(total, image)
-        left_out = 0 if image.valid is None else int(np.count_nonzero(~image.valid))
-        if left_out == image.values.size > 0:
-            raise Degenerate("no cell of the image is valid, so its load is not known")
         area_cm2 = n * image.cell_area_cm2
         return Load(loaded, total, force_n, area_cm2, peak, x_cm, y_cm, left_out)
 

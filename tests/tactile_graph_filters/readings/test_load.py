@@ -147,6 +147,16 @@ def test_noise_around_zero_loads_nothing_though_it_sums_up_to_something(shape):
     assert LoadOf()(Image(values + 1.0), Mask(~on & on)).loaded
 
 
+def test_what_noise_sums_up_to_is_of_the_valid_cells_alone():
+    shape, loaded = (16, 16), 0
+    valid = np.zeros(shape, dtype=bool)
+    valid[:4] = True
+    for seed in range(400):
+        noise = np.random.default_rng(seed).normal(0.0, 1.0, shape)
+        loaded += LoadOf()(Image(noise, valid=valid), Mask(np.zeros(shape, dtype=bool))).loaded
+    assert loaded <= 1
+
+
 def test_a_footprint_changes_nothing_where_no_cell_reads_less_than_zero():
     """But the area, which is its own: makers of pads print the sum of all cells."""
     image = image_of([[0.0, 0.1, 3.0], [0.2, 0.0, 5.0]])

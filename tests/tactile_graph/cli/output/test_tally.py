@@ -250,6 +250,9 @@ class Counting:
         ([5], "notice   c: a peak of 5 is much (in frame 0)"),
         ([1, 3], ""),
         ([1, 1], ""),
+        ([1, 3, *[1] * 17, 5], "notice   c: a peak of 3 is much (in 2 of 20 frames looked at, "
+         "first in frame 1)"),
+        ([3, *[1] * 19, 5], ""),
     ],
 )  # fmt: skip
 def test_what_more_than_half_of_the_frames_say_is_told_in_closing_and_kept(
