@@ -148,6 +148,7 @@ class Session:
             selection=selected(),
             baseline=self._baseline,
             held=self._gaze.held,
+            awaited=len(self._starts) > 1,
         )
 
         def take(message: wire.FromBench) -> None:

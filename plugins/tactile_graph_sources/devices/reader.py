@@ -36,11 +36,13 @@ class Reader:
     timeout_s : float
         Without a frame for so long the link is ``stalled``.
     queue_size : int
+    awaited : bool
+        Whether a port that cannot be opened at the start is waited for, as it is later.
 
     Raises
     ------
     UnpluggedError
-        If the port cannot be opened at the start; later it is waited for.
+        If the port cannot be opened at the start, and is not waited for.
     """
 
     def __init__(
@@ -51,6 +53,7 @@ class Reader:
         newest: bool = False,
         timeout_s: float = 2.0,
         queue_size: int = 1024,
+        awaited: bool = False,
     ) -> None:
         self.preset = preset
         self.url = url
@@ -69,7 +72,13 @@ class Reader:
         self._byte_s = 10.0 / (baud or preset.transport.baud)
         self._by_length = isinstance(preset.framer, Packet) and preset.framed_by_silence
         self._unproven = 0
-        self._port: Port | None = self._open()
+        self._port: Port | None = None
+        try:
+            self._port = self._open()
+        except UnpluggedError as error:
+            if not awaited:
+                raise
+            self._lost(error)
         self._thread = threading.Thread(target=self._run, name=f"serial {url}", daemon=True)
         self._thread.start()
 
@@ -110,11 +119,14 @@ class Reader:
             else:
                 self._listen(port, request.send if request else b"")
         except UnpluggedError as error:
-            self.state = "lost"
-            self._events.append(f"lost ({error}); waiting for it to come back")
+            self._lost(error)
             port.close()  # here and not in stop(): a close from another thread breaks the read
             self._port = None
             self.decoder.reset()
+
+    def _lost(self, error: UnpluggedError) -> None:
+        self.state = "lost"
+        self._events.append(f"lost ({error}); waiting for it to come back")
 
     def _reopened(self) -> Port | None:
         delay = FIRST_BACKOFF_S
