@@ -40,6 +40,8 @@ from tactile_graph_live.server.watching import FileSense
 PULSE_S = 0.25
 LAST_FRAMES_S = 3.0
 """How long the end of a recording is waited for."""
+HOLDS = ("pause", "step", "scrub")
+"""What holds the picture still."""
 MOST_STARTS, STARTS_WITHIN_S = 3, 60.0
 Say = Callable[[str, Level], None]
 
@@ -98,7 +100,9 @@ class Session:
         self._compared: asyncio.Queue[wire.Compared] = asyncio.Queue()
         self._starts: deque[float] = deque(maxlen=MOST_STARTS)
         self._tasks: set[asyncio.Task[None]] = set()
-        self.viewers = Viewers(lambda shown: self._send(wire.Show(tuple(sorted(shown)))))
+        self.viewers = Viewers(
+            lambda shown: self._send(wire.Show(tuple(sorted(shown)))), self._left
+        )
         self.programs = Programs(self._tell_wants)
         self._editor = Editor(
             Draft.of(setup.pipeline),
@@ -327,8 +331,14 @@ class Session:
                 self._gaze.again()
             else:
                 self._orders[kind](**fields)
+                if kind in HOLDS:
+                    self._gaze.held_by(viewer)
         except TactileGraphError as error:
             viewer.tell("told", encoded(messages.Told(visible(str(error)), "error")))
+
+    def _left(self, viewer: Viewer) -> None:
+        if not self._closing and self._gaze.left(viewer):
+            self._tell("whoever held the picture still has left: it goes on")
 
     def _tare(self) -> None:
         self._taring = True

@@ -190,6 +190,17 @@ def test_what_is_played_waits_and_is_stepped_through(folder: Path) -> None:
             pass
 
 
+def test_a_pause_ends_when_whoever_asked_for_it_has_left(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--rate", "100") as command, Page(command) as stays:
+        with Page(command) as page:
+            page.ask("pause")
+            stays.until("pulse", paused=True)
+        stays.told("has left: it goes on")
+        n = stays.until("pulse", paused=False)["frames"]
+        while stays.until("pulse")["frames"] < n + 20:
+            pass
+
+
 def test_a_recording_holds_every_frame_with_its_label(shared: Command, shared_folder: Path) -> None:
     pytest.importorskip("zarr", reason="the zarr extra is not installed")
     before = {*shared_folder.glob("*.zarr")}
