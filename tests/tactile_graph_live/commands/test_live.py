@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -699,6 +700,8 @@ def test_a_source_that_begins_anew_waits_for_a_pad_that_is_unplugged(
             page.until("pulse", state="waiting")
         page.told("back")
         page.until("pulse", trouble="", state="running")
+        _, out = command.end()
+        assert re.search(r"^\d\d:\d\d:\d\d  warning: \S+tty: lost ", out, re.M)
 
 
 def test_a_page_that_comes_late_is_told_why_nothing_comes_until_the_preset_is_right(
