@@ -43,6 +43,8 @@ LAST_FRAMES_S = 3.0
 HOLDS = ("pause", "step", "scrub")
 """What holds the picture still."""
 MOST_STARTS, STARTS_WITHIN_S = 3, 60.0
+QUIET_S = 60.0
+"""For so long the terminal hears no more of why something of a kind is not done; pages do."""
 Say = Callable[[str, Level], None]
 
 
@@ -100,6 +102,7 @@ class Session:
         self._compared: asyncio.Queue[wire.Compared] = asyncio.Queue()
         self._starts: deque[float] = deque(maxlen=MOST_STARTS)
         self._tasks: set[asyncio.Task[None]] = set()
+        self._refused: dict[str, float] = {}
         self.viewers = Viewers(
             lambda shown: self._send(wire.Show(tuple(sorted(shown)))), self._left
         )
@@ -356,13 +359,21 @@ class Session:
             try:
                 await work
             except TactileGraphError as error:
-                self._tell(str(error), "error")
+                self._refuse(getattr(work, "__qualname__", ""), str(error))
             except Exception as error:  # a step's code may raise anything
                 self._tell(f"{type(error).__name__}: {text_of(error)}", "error")
 
         task = asyncio.create_task(done())
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
+
+    def _refuse(self, kind: str, why: str) -> None:
+        """Tell why something is not done; the terminal not at each try, which a page may repeat."""
+        now = time.perf_counter()
+        if now - self._refused.get(kind, -QUIET_S) >= QUIET_S:
+            self._refused[kind] = now
+            self._say(why, "error")
+        self.viewers.tell(messages.Told(visible(why), "error"))
 
     async def _save(self, name: str) -> None:
         now = self._editor.now

@@ -684,6 +684,15 @@ def test_a_preset_saved_opens_the_port_again_without_the_tare_and_the_recording(
     assert (kept["port"], kept["preset"]) == (str(tmp_path / "tty"), "kit.yaml")
 
 
+def test_the_terminal_is_not_told_at_each_try_what_a_page_may_not_save(command: Command) -> None:
+    with Page(command) as page:
+        for _ in range(5):
+            page.ask("save", name="../mine")
+            page.told("../mine")
+    _, out = command.end()
+    assert out.count("../mine") == 1
+
+
 @pytest.mark.parametrize("by", ["preset", "bench"])
 def test_a_source_that_begins_anew_waits_for_a_pad_that_is_unplugged(
     tmp_path: Path, by: str
