@@ -194,6 +194,16 @@ class Sending:
         self._thread.join(10)
         self._pad.unplug()
 
+    @contextmanager
+    def unplugged(self) -> Iterator[None]:
+        """Have the pad unplugged until the block ends."""
+        with self.pad_lock:
+            self._pad.unplug()
+            try:
+                yield
+            finally:
+                self._pad.plug_in()
+
     def _send(self) -> None:
         rng = np.random.default_rng(0)
         number = 0

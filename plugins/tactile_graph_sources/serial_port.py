@@ -62,7 +62,8 @@ def serial(
         Frames that may wait to be taken.
     report : Report
         Takes the link's counters, what happened to it and how many frames wait; once none are
-        wanted the port is read no more, and what came before ends the frames.
+        wanted the port is read no more, and what came before ends the frames. It tells whether a
+        port that cannot be opened at the start is waited for.
 
     Yields
     ------
@@ -74,14 +75,14 @@ def serial(
     Raises
     ------
     UsageError
-        If the port cannot be opened at the start, or the preset is not known.
+        If the port cannot be opened at the start and is not waited for, or the preset is not known.
     DataError
         If no frame came for ``give_up_s``.
     """
     from tactile_graph_sources.devices.preset_file import load_preset
 
     kit = load_preset(preset)
-    reader = _opened(kit, port, baud, newest, timeout_s, queue_size)
+    reader = _opened(kit, port, baud, newest, timeout_s, queue_size, report.awaited)
     if n_frames is not None:
         report.expect(n_frames)
     teller = _Teller(reader, report)
@@ -126,7 +127,13 @@ class _Teller:
 
 
 def _opened(
-    kit: Preset, port: str, baud: int | None, newest: bool, timeout_s: float, queue_size: int
+    kit: Preset,
+    port: str,
+    baud: int | None,
+    newest: bool,
+    timeout_s: float,
+    queue_size: int,
+    awaited: bool,
 ) -> Reader:
     from tactile_graph_sources.devices.port import UnpluggedError
     from tactile_graph_sources.devices.port_list import list_ports
@@ -134,7 +141,7 @@ def _opened(
     from tactile_graph_sources.devices.reader import Reader
 
     try:
-        return Reader(kit, port, baud, newest, timeout_s, queue_size)
+        return Reader(kit, port, baud, newest, timeout_s, queue_size, awaited)
     except UnpluggedError as error:
         names = [p.device for p in list_ports()]
         raise UsageError(refusal(port, error.__cause__ or error, names)) from error

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from datetime import datetime
 
 import click
 
@@ -14,6 +15,11 @@ def say(text: object = "", *, err: bool = False, nl: bool = True) -> None:
     """Print a text to stdout, or to stderr; what would act on the terminal is spelled out."""
     told = readable(visible(str(text)), encoding_of(sys.stderr if err else sys.stdout))
     click.echo(told, err=err, nl=nl)
+
+
+def clock() -> str:
+    """Return the time of day, to begin a line with that tells of something as it happens."""
+    return datetime.now().strftime("%H:%M:%S")
 
 
 def hand_over(text: str) -> None:

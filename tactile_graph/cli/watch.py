@@ -7,9 +7,9 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
+from tactile_graph.cli.say import clock
 from tactile_graph.files import LOOKED_FOR, named_from_folder
 
 if TYPE_CHECKING:
@@ -70,8 +70,7 @@ def watch(
             out.print(f"watching {_counted(len(stamps))}; Ctrl-C ends", style="dim")
             changed = _next_change(stamps, wait)
             out.print()
-            clock = datetime.now().strftime("%H:%M:%S")
-            out.print(f"{clock}  {', '.join(changed)} changed", style="bold", soft_wrap=True)
+            out.print(f"{clock()}  {', '.join(changed)} changed", style="bold", soft_wrap=True)
     except KeyboardInterrupt:
         return right
 

@@ -50,6 +50,8 @@ class Report:
     wanted : bool
         Whether more frames are taken: false once nobody waits for the source any more. One that
         waits for a device looks here now and then, and ends, after what it has read by then.
+    awaited : bool
+        Whether a device that is not there at first is waited for, as one that went away is.
     n_waiting : int or None
         How many frames have come and wait to be taken, of a source that reads on meanwhile; None
         of others.
@@ -64,6 +66,7 @@ class Report:
         self.n_places: int | None = None
         self.digests: dict[str, str] = {}
         self.wanted = True
+        self.awaited = False
         self.n_waiting: int | None = None
         self._listener = listener
         self._keep = keep

@@ -51,6 +51,10 @@ def test_no_port_gives_a_misaligned_frame_as_good_and_all_lock_again() -> None:
     attacked("ports.py", "--frames", "128")
 
 
+def test_replies_that_pause_or_are_hurt_tear_no_frame_that_is_given_as_good() -> None:
+    attacked("replies.py", "--seconds", "4")
+
+
 def test_damaged_databases_are_refused_or_read_as_they_were() -> None:
     attacked("databases.py", "--tries", "300")
 

@@ -81,14 +81,15 @@ class Bench:
         self._beside: Beside | None = None
         if order.beside:
             self._beside = Beside(pickle.loads(order.beside), seed=order.seed)
-        self._begin()
+        self._begin(order.awaited)
 
-    def _begin(self) -> None:
-        """Make ready to read the source from its beginning."""
+    def _begin(self, awaited: bool) -> None:
+        """Make ready to read the source from its beginning; wait for a device that was there."""
         order = self._order
         first = 0 if self._newest is None else self._newest.index + 1
         counts, self._report = self._report.counts, Report(listener=self._heard)
         self._report.counts.update(counts)
+        self._report.awaited = awaited
         self._trouble = ""
         self._player: Player = player(
             self._pipeline,
@@ -134,7 +135,7 @@ class Bench:
             self._await_close()
             if not self._ended:
                 self._part()
-                self._begin()
+                self._begin(awaited=True)
         if self._beside is not None:
             self._beside.close()
 

@@ -47,6 +47,8 @@ class Order:
         What an earlier bench was tared by.
     held : bool
         Whether what is played waits from the beginning.
+    awaited : bool
+        Whether a device that is not there is waited for from the beginning: it was there before.
     """
 
     pickled: bytes
@@ -61,6 +63,7 @@ class Order:
     beside: bytes = b""
     baseline: NDArray[np.float64] | None = None
     held: bool = False
+    awaited: bool = False
 
 
 # -- from the bench ------------------------------------------------------------------------------

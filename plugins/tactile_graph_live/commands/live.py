@@ -14,7 +14,7 @@ import click
 from tactile_graph.cli.arguments import Span, pipeline_argument
 from tactile_graph.cli.completions import complete_set, complete_source, complete_with
 from tactile_graph.cli.numbers import Finite
-from tactile_graph.cli.say import say
+from tactile_graph.cli.say import clock, say
 from tactile_graph.errors import UsageError
 
 if TYPE_CHECKING:
@@ -246,4 +246,4 @@ def _variant(name: str, opened: Pipeline) -> Pipeline:
 
 
 def _tell(text: str, level: str) -> None:
-    say(text if level == "note" else f"{level}: {text}", err=True)
+    say(text if level == "note" else f"{clock()}  {level}: {text}", err=True)

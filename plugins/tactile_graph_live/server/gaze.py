@@ -9,7 +9,7 @@ from typing import Any
 from tactile_graph_live.bench import wire
 from tactile_graph_live.server.lookback import Lookback
 from tactile_graph_live.server.unawaited import unawaited
-from tactile_graph_live.server.viewers import Picture, Viewers
+from tactile_graph_live.server.viewers import Picture, Viewer, Viewers
 
 Later = Callable[[Coroutine[Any, Any, None]], None]
 
@@ -50,6 +50,7 @@ class Gaze:
         self._early: Picture | None = None
         self._lock = asyncio.Lock()
         self.paused = False
+        self._holders: set[Viewer] = set()
         self.shown: Picture | None = None
         self._lost: Picture | None = None
 
@@ -81,11 +82,25 @@ class Gaze:
     def live(self) -> None:
         """Look at the newest again."""
         self.paused, self._stepping = False, False
+        self._holders.clear()
         self._ticket += 1
         if self._holds:
             self._send(wire.Hold(False))
         if self._newest is not None:
             self._show(self._newest.shown_again())
+
+    def held_by(self, viewer: Viewer) -> None:
+        """Note who holds the picture still, if it is: it goes on once all of them have left."""
+        if self.paused:
+            self._holders.add(viewer)
+
+    def left(self, viewer: Viewer) -> bool:
+        """Go on if nobody who is still there holds the picture; return whether it did."""
+        if self._holders != {viewer}:
+            self._holders.discard(viewer)
+            return False
+        self.live()
+        return True
 
     def step(self) -> None:
         """Look at the frame behind this one; what is held plays one more where there is none."""

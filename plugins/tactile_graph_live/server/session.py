@@ -40,7 +40,11 @@ from tactile_graph_live.server.watching import FileSense
 PULSE_S = 0.25
 LAST_FRAMES_S = 3.0
 """How long the end of a recording is waited for."""
+HOLDS = ("pause", "step", "scrub")
+"""What holds the picture still."""
 MOST_STARTS, STARTS_WITHIN_S = 3, 60.0
+QUIET_S = 60.0
+"""For so long the terminal hears no more of why something of a kind is not done; pages do."""
 Say = Callable[[str, Level], None]
 
 
@@ -98,7 +102,10 @@ class Session:
         self._compared: asyncio.Queue[wire.Compared] = asyncio.Queue()
         self._starts: deque[float] = deque(maxlen=MOST_STARTS)
         self._tasks: set[asyncio.Task[None]] = set()
-        self.viewers = Viewers(lambda shown: self._send(wire.Show(tuple(sorted(shown)))))
+        self._refused: dict[str, float] = {}
+        self.viewers = Viewers(
+            lambda shown: self._send(wire.Show(tuple(sorted(shown)))), self._left
+        )
         self.programs = Programs(self._tell_wants)
         self._editor = Editor(
             Draft.of(setup.pipeline),
@@ -148,6 +155,7 @@ class Session:
             selection=selected(),
             baseline=self._baseline,
             held=self._gaze.held,
+            awaited=len(self._starts) > 1,
         )
 
         def take(message: wire.FromBench) -> None:
@@ -326,8 +334,14 @@ class Session:
                 self._gaze.again()
             else:
                 self._orders[kind](**fields)
+                if kind in HOLDS:
+                    self._gaze.held_by(viewer)
         except TactileGraphError as error:
             viewer.tell("told", encoded(messages.Told(visible(str(error)), "error")))
+
+    def _left(self, viewer: Viewer) -> None:
+        if not self._closing and self._gaze.left(viewer):
+            self._tell("whoever held the picture still has left: it goes on")
 
     def _tare(self) -> None:
         self._taring = True
@@ -345,13 +359,21 @@ class Session:
             try:
                 await work
             except TactileGraphError as error:
-                self._tell(str(error), "error")
+                self._refuse(getattr(work, "__qualname__", ""), str(error))
             except Exception as error:  # a step's code may raise anything
                 self._tell(f"{type(error).__name__}: {text_of(error)}", "error")
 
         task = asyncio.create_task(done())
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
+
+    def _refuse(self, kind: str, why: str) -> None:
+        """Tell why something is not done; the terminal not at each try, which a page may repeat."""
+        now = time.perf_counter()
+        if now - self._refused.get(kind, -QUIET_S) >= QUIET_S:
+            self._refused[kind] = now
+            self._say(why, "error")
+        self.viewers.tell(messages.Told(visible(why), "error"))
 
     async def _save(self, name: str) -> None:
         now = self._editor.now

@@ -138,11 +138,15 @@ class Viewers:
     ----------
     on_shown : callable
         Told which nodes' pictures somebody looks at, whenever that changes.
+    on_left : callable
+        Told who has left.
     """
 
-    def __init__(self, on_shown: Callable[[frozenset[str]], None]) -> None:
+    def __init__(
+        self, on_shown: Callable[[frozenset[str]], None], on_left: Callable[[Viewer], None]
+    ) -> None:
         self._all: dict[Viewer, asyncio.Task[None]] = {}
-        self._on_shown = on_shown
+        self._on_shown, self._on_left = on_shown, on_left
         self.shown: frozenset[str] = frozenset()
         self.n_dropped = 0
 
@@ -204,6 +208,7 @@ class Viewers:
                 task.cancel()
             await asyncio.gather(sending, reading, return_exceptions=True)
             self.shown_changed()
+            self._on_left(viewer)
         if viewer.dropped:
             await websocket.close(TRY_LATER, viewer.dropped)
 

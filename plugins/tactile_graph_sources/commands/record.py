@@ -15,7 +15,7 @@ import click
 
 from tactile_graph.cli.completions import complete_source, complete_with
 from tactile_graph.cli.numbers import Finite
-from tactile_graph.cli.say import say
+from tactile_graph.cli.say import clock, say
 from tactile_graph.cli.targets import check_targets
 from tactile_graph.foreign_text import pasted
 
@@ -107,7 +107,7 @@ def record(
     told = {"preset": preset, "baud": baud, "give_up_s": give_up}
     step, given = captured(port, device, told, source)
     _check_target(target)
-    report = Report(listener=lambda where, what: say(f"{where}: {what}", err=True))
+    report = Report(listener=partial(_heard, source is None))
     limits = {"n_frames": n_frames, "seconds": seconds}
     frames = _frames(step, given, settings, limits, report)
     failure: Exception | None = None
@@ -145,6 +145,11 @@ def record(
         say(f"given up: {why}", err=True)
     if store is None or store.n_written == store.n_before:
         click.get_current_context().exit(NOT_DONE)
+
+
+def _heard(by_port: bool, where: str, what: str) -> None:
+    """Say what the source tells; of a port, when it was."""
+    say(f"{clock()}  {where}: {what}" if by_port else f"{where}: {what}", err=True)
 
 
 def _about(preset: str | None, pad: str, port: str) -> dict[str, Any]:

@@ -80,11 +80,15 @@ class Decoder:
 
     def reset(self) -> None:
         """Start afresh after a reconnect; the next frame is marked as following a gap."""
-        self.framer.reset()
+        self.discard()
         self.assembler.reset()
         if self._clock is not None:
             self._clock.reset()
         self._lost = self.counts.good > 0
+
+    def discard(self) -> None:
+        """Drop what has come of the next unit."""
+        self.framer.reset()
 
     def hint(self) -> str:
         """Return what the bytes themselves say about why no frame is found; may be empty."""

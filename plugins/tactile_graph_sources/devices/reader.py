@@ -16,6 +16,10 @@ FIRST_BACKOFF_S = 0.5
 LONGEST_BACKOFF_S = 5.0
 READ_WAIT_S = 0.05
 CHUNKS_KEPT = 4096
+QUIET_S = 0.05
+"""At least so long nothing comes before replies count as all there: drivers hold bytes back."""
+PROVEN = 8
+"""Replies in a row, whole and in time, after which a part that never came no longer can."""
 
 
 class Reader:
@@ -32,11 +36,13 @@ class Reader:
     timeout_s : float
         Without a frame for so long the link is ``stalled``.
     queue_size : int
+    awaited : bool
+        Whether a port that cannot be opened at the start is waited for, as it is later.
 
     Raises
     ------
     UnpluggedError
-        If the port cannot be opened at the start; later it is waited for.
+        If the port cannot be opened at the start, and is not waited for.
     """
 
     def __init__(
@@ -47,6 +53,7 @@ class Reader:
         newest: bool = False,
         timeout_s: float = 2.0,
         queue_size: int = 1024,
+        awaited: bool = False,
     ) -> None:
         self.preset = preset
         self.url = url
@@ -62,7 +69,16 @@ class Reader:
         self._last_good = time.perf_counter()
         self._bytes_then = 0
         self._wait_s = min(READ_WAIT_S, preset.transport.silence_s)
-        self._port: Port | None = self._open()
+        self._byte_s = 10.0 / (baud or preset.transport.baud)
+        self._by_length = isinstance(preset.framer, Packet) and preset.framed_by_silence
+        self._unproven = 0
+        self._port: Port | None = None
+        try:
+            self._port = self._open()
+        except UnpluggedError as error:
+            if not awaited:
+                raise
+            self._lost(error)
         self._thread = threading.Thread(target=self._run, name=f"serial {url}", daemon=True)
         self._thread.start()
 
@@ -103,11 +119,14 @@ class Reader:
             else:
                 self._listen(port, request.send if request else b"")
         except UnpluggedError as error:
-            self.state = "lost"
-            self._events.append(f"lost ({error}); waiting for it to come back")
+            self._lost(error)
             port.close()  # here and not in stop(): a close from another thread breaks the read
             self._port = None
             self.decoder.reset()
+
+    def _lost(self, error: UnpluggedError) -> None:
+        self.state = "lost"
+        self._events.append(f"lost ({error}); waiting for it to come back")
 
     def _reopened(self) -> Port | None:
         delay = FIRST_BACKOFF_S
@@ -144,17 +163,31 @@ class Reader:
 
     def _ask(self, port: Port, request: bytes) -> None:
         """Ask a pad for one frame after the other."""
+        in_step = False  # whoever read the port before may have asked, too
         while not self._stop.is_set():
             late = port.pending()
             if late:
                 self._take(late, time.perf_counter())
+            if late and self._by_length:
+                self._await_quiet(port)
+                self.decoder.discard()  # as long as a reply or not: it was not asked for
+                in_step = False
             self._keep(self.decoder.boundary())
+            good, short = self.counts.good, self.counts.bad["short"]
             port.write(request)
-            self._await_reply(port)
+            prompt = self._await_reply(port) and in_step
+            if self._by_length and not prompt:
+                self._await_quiet(port)
             self._keep(self.decoder.boundary())
+            in_step = self.counts.good > good
+            if self.counts.bad["short"] > short:  # the rest may come before the next reply
+                self._unproven = PROVEN
+            elif prompt:
+                self._unproven = max(0, self._unproven - 1)
             self._stalled(time.perf_counter())
 
-    def _await_reply(self, port: Port) -> None:
+    def _await_reply(self, port: Port) -> bool:
+        """Read a reply; return whether it came in time, and nothing behind it."""
         good = self.counts.good
         deadline = time.perf_counter() + self._reply_s()
         while not self._stop.is_set():
@@ -163,21 +196,39 @@ class Reader:
             if data:
                 self._take(data, now)
             if self.counts.good > good:
-                return
+                return True
             if self.decoder.complete:
+                if self._by_length:
+                    time.sleep(2.0 * self._byte_s)  # its excess is here by then
                 extra = port.pending()  # a reply that is too long is no frame
                 if extra:
                     self._take(extra, now)
-                return
+                return not extra
             if now > deadline:
+                return False
+        return False
+
+    def _await_quiet(self, port: Port) -> None:
+        """Read on until nothing comes for as long as a reply takes on the wire, or a stall."""
+        quiet_s = max(QUIET_S, self._on_wire_s())
+        start = last = time.perf_counter()
+        while not self._stop.is_set():
+            data = port.read()
+            now = time.perf_counter()
+            if data:
+                self._take(data, now)
+                last = now
+            if now - last >= quiet_s or now - start >= self.timeout_s:
                 return
 
     def _reply_s(self) -> float:
         """How long a reply may take: twice its time on the wire and some for the scan."""
+        return min(self.timeout_s, 0.25 + 2.0 * self._on_wire_s())
+
+    def _on_wire_s(self) -> float:
+        """How long the largest reply takes on the wire."""
         packet = isinstance(self.preset.framer, Packet)
-        n_bytes = 4 * self.preset.geometry.n_cells if packet else 8 * self.preset.geometry.n_cells
-        on_wire = 10.0 * n_bytes / (self.baud or self.preset.transport.baud)
-        return min(self.timeout_s, 0.25 + 2.0 * on_wire)
+        return (4 if packet else 8) * self.preset.geometry.n_cells * self._byte_s
 
     def _take(self, data: bytes, now: float) -> None:
         self._chunks.append((self.counts.bytes + len(data), now))
@@ -188,6 +239,9 @@ class Reader:
             return
         self._last_good, self._bytes_then = time.perf_counter(), self.counts.bytes
         self.state = "streaming"
+        if self._unproven:
+            self.counts.doubtful += len(frames)  # none of these were doubtful by their framing
+            frames = [f._replace(doubtful=True) for f in frames]
         self.inbox.put([Arrived(f, self._time_of(f.end)) for f in frames])
 
     def _time_of(self, end: int) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -187,6 +188,17 @@ def test_what_is_played_waits_and_is_stepped_through(folder: Path) -> None:
         page.ask("step")
         page.until("frame", index=n)
         while page.until("pulse")["kept_frames"] != n + 1:
+            pass
+
+
+def test_a_pause_ends_when_whoever_asked_for_it_has_left(folder: Path) -> None:
+    with running(folder, "mine.yaml", "--rate", "100") as command, Page(command) as stays:
+        with Page(command) as page:
+            page.ask("pause")
+            stays.until("pulse", paused=True)
+        stays.told("has left: it goes on")
+        n = stays.until("pulse", paused=False)["frames"]
+        while stays.until("pulse")["frames"] < n + 20:
             pass
 
 
@@ -636,22 +648,23 @@ geometry: {{rows: {}, columns: 8, flip: {}}}
 
 
 @contextmanager
-def pad_of_lines(folder: Path, rows: int = 8) -> Iterator[tuple[Command, Page]]:
+def pad_of_lines(folder: Path, rows: int = 8) -> Iterator[tuple[Command, Page, Sending]]:
     """Run the command and a page on a pad of 8 x 8 cells, by a preset of so many rows."""
     kit = Kit("mine", (8, 8), 900, lambda pad, _: b",".join(b"%d" % v for v in pad.flat) + b"\n")
     (folder / "mine.yaml").write_text(COUNTS)
     (folder / "kit.yaml").write_text(PRESET.format(rows, "none"))
     pad = FakePad(folder / "tty")
     options = ("mine.yaml", "--port", str(pad.link), "--preset", "kit.yaml")
-    with Sending(pad, kit), running(folder, *options) as command, Page(command) as page:
-        yield command, page
+    sending = Sending(pad, kit)
+    with sending, running(folder, *options) as command, Page(command) as page:
+        yield command, page, sending
 
 
 def test_a_preset_saved_opens_the_port_again_without_the_tare_and_the_recording(
     tmp_path: Path,
 ) -> None:
     zarr = pytest.importorskip("zarr", reason="the zarr extra is not installed")
-    with pad_of_lines(tmp_path) as (_, page):
+    with pad_of_lines(tmp_path) as (_, page, _):
         page.ask("tare")
         page.told("tared by the median")
         page.ask("record", on=True, label="")
@@ -671,10 +684,39 @@ def test_a_preset_saved_opens_the_port_again_without_the_tare_and_the_recording(
     assert (kept["port"], kept["preset"]) == (str(tmp_path / "tty"), "kit.yaml")
 
 
+def test_the_terminal_is_not_told_at_each_try_what_a_page_may_not_save(command: Command) -> None:
+    with Page(command) as page:
+        for _ in range(5):
+            page.ask("save", name="../mine")
+            page.told("../mine")
+    _, out = command.end()
+    assert out.count("../mine") == 1
+
+
+@pytest.mark.parametrize("by", ["preset", "bench"])
+def test_a_source_that_begins_anew_waits_for_a_pad_that_is_unplugged(
+    tmp_path: Path, by: str
+) -> None:
+    with pad_of_lines(tmp_path) as (command, page, sending):
+        page.until("frame")
+        with sending.unplugged():
+            page.told("lost")
+            if by == "preset":
+                (tmp_path / "kit.yaml").write_text(PRESET.format(8, "rows"))
+            else:
+                os.kill(command.bench(), signal.SIGKILL)
+            page.told("could not open port")
+            page.until("pulse", state="waiting")
+        page.told("back")
+        page.until("pulse", trouble="", state="running")
+        _, out = command.end()
+        assert re.search(r"^\d\d:\d\d:\d\d  warning: \S+tty: lost ", out, re.M)
+
+
 def test_a_page_that_comes_late_is_told_why_nothing_comes_until_the_preset_is_right(
     tmp_path: Path,
 ) -> None:
-    with pad_of_lines(tmp_path, rows=9) as (command, page):
+    with pad_of_lines(tmp_path, rows=9) as (command, page, _):
         page.told("stalled")
         with Page(command) as late:
             while "the size 9 x 8" not in late.until("pulse")["trouble"]:

@@ -16,7 +16,7 @@ from tactile_graph import Frame
 from tactile_graph_live.bench import wire
 from tactile_graph_live.server import messages
 from tactile_graph_live.server.gaze import Gaze
-from tactile_graph_live.server.viewers import Picture
+from tactile_graph_live.server.viewers import Picture, Viewer
 
 
 def shown_frame(index: int, version: int = 1) -> messages.Frame:
@@ -105,6 +105,38 @@ def test_the_next_frame_is_shown_once_its_graph_is_told_of(room: Room) -> None:
     room.gaze.told()
     room.came(2)
     assert room.seen == [1]
+
+
+def test_a_hold_ends_when_the_last_who_holds_has_left(room: Room) -> None:
+    first, second, other = (Viewer(_Nowhere()) for _ in range(3))
+    room.came(1)
+    room.gaze.pause()
+    for viewer in (first, second):
+        room.gaze.held_by(viewer)
+    assert not room.gaze.left(other)
+    assert not room.gaze.left(first)
+    room.came(2)
+    assert room.gaze.paused
+    assert room.gaze.left(second)
+    assert not room.gaze.paused
+    assert room.seen == [1, 2]
+    assert room.gaze.held is False
+
+
+def test_a_hold_that_another_ended_is_over_for_whoever_leaves(room: Room) -> None:
+    first, second = Viewer(_Nowhere()), Viewer(_Nowhere())
+    room.gaze.pause()
+    room.gaze.held_by(first)
+    room.gaze.live()
+    room.gaze.pause()
+    room.gaze.held_by(second)
+    assert not room.gaze.left(first)
+    assert room.gaze.paused
+
+
+class _Nowhere:
+    async def send_text(self, data: str) -> None:
+        """Send nothing."""
 
 
 def test_only_what_is_played_is_held_as_well() -> None:

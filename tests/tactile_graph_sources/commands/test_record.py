@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import signal
 import threading
 import time
@@ -449,6 +450,12 @@ def test_a_silent_pad_ends_in_time_and_is_told(tmp_path: Path, pad: FakePad) -> 
     assert result.exit_code == 2
     assert "no frame came, and nothing was written" in result.output
     assert not (tmp_path / "a.zarr").exists()
+
+
+@pytest.mark.slow
+def test_what_a_port_tells_begins_with_the_time_of_day(tmp_path: Path, pad: FakePad) -> None:
+    result = run(pad, tmp_path / "a.zarr", "--give-up", "2.5")
+    assert re.search(r"^\d\d:\d\d:\d\d  \S+tty: stalled: nothing came", result.output, re.M)
 
 
 def test_frames_with_a_true_shape_of_a_plugins_own_are_kept_without_it(
