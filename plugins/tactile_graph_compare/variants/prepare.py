@@ -11,13 +11,21 @@ from tactile_graph import Pipeline, load
 from tactile_graph.errors import PipelineError, UsageError, did_you_mean, one_of
 from tactile_graph.inspect import Graph, idle_settings, plain
 from tactile_graph.plugins.registry import Registry, installed
-from tactile_graph_compare.variants.request import VariantRequest, as_yaml, spelled
+from tactile_graph_compare.variants.request import (
+    VariantRequest,
+    as_yaml,
+    name_of,
+    spelled,
+)
 from tactile_graph_compare.variants.sweeps import Sweep, combinations
 
 
 @dataclass(frozen=True, eq=False)
 class PreparedVariant:
-    """A variant ready to run: its pipeline, its label, and how to ask for it again."""
+    """A variant ready to run: its pipeline, its label, and how to ask for it again.
+
+    ``given`` is empty where no command can: the pipeline is a program's own.
+    """
 
     label: str
     pipeline: Pipeline
@@ -31,7 +39,7 @@ class _Loaded:
     request: VariantRequest
     pipeline: Pipeline
     settings: Mapping[str, Any]
-    """All that was set of it: its own, the common ones, those of sweeps."""
+    """All that was set of it: in the pipeline handed in, its own, the common ones, of sweeps."""
 
 
 def prepare(
@@ -81,7 +89,8 @@ def prepare(
 def _load(request: VariantRequest, registry: Registry) -> _Loaded:
     name = request.name
     pipeline = name if isinstance(name, Pipeline) else load(name, registry)
-    return _set(_Loaded(request, pipeline, {}), request.settings)
+    own = {f"{node}.{k}": v for node, given in pipeline.overrides.items() for k, v in given.items()}
+    return _set(_Loaded(request, pipeline, own), request.settings)
 
 
 def _set(loaded: _Loaded, settings: Mapping[str, Any]) -> _Loaded:
@@ -179,13 +188,13 @@ def _prepared(one: _Loaded, everything: Sequence[_Loaded]) -> PreparedVariant:
     for name in only:
         pipeline.ref(name)  # says what is wrong with it
     named = one.request.name
-    given = spelled(pipeline.name if isinstance(named, Pipeline) else str(named),
-                    one.settings, only)  # fmt: skip
+    name = name_of(named) if isinstance(named, Pipeline) else str(named)
+    words = spelled(name or pipeline.name, one.settings, only)
     label = _label(one)
     if sum(_label(other) == label for other in everything) > 1:
-        label = given.strip("'")
+        label = words.strip("'")
     asked = only or tuple(pipeline.outputs)
-    return PreparedVariant(label, pipeline, asked, given)
+    return PreparedVariant(label, pipeline, asked, words if name else "")
 
 
 def _label(one: _Loaded) -> str:
