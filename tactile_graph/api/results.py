@@ -10,6 +10,7 @@ import numpy as np
 from tactile_graph.api.result import Result
 from tactile_graph.errors import UsageError, without
 from tactile_graph.pipeline.graph import Graph
+from tactile_graph.steps.injected import Report
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,6 +31,8 @@ class Results(Iterator[Result]):
     results : iterator of Result
     source : iterable, optional
         Where the frames come from; a generator is closed with the stream.
+    report : Report, optional
+        Of that source; an empty one where frames were handed in.
     """
 
     def __init__(
@@ -38,7 +41,9 @@ class Results(Iterator[Result]):
         asked: tuple[str, ...],
         results: Iterator[Result],
         source: Iterable[Any] = (),
+        report: Report | None = None,
     ) -> None:
+        self.report = report or Report()
         self._pipeline = pipeline
         self._asked = asked
         self._results = results

@@ -175,7 +175,7 @@ def test_what_was_set_in_a_pipeline_handed_in_is_told_as_if_it_were_typed():
             "'circle-3 --set fine.factor=4 --set footprint.level_v=0.05'",
         ),
     ]
-    with pytest.raises(UsageError, match="named twice: circle-3 --set fine.factor=4"):
+    with pytest.raises(UsageError, match=r"named twice: circle-3 --set fine\.factor=4"):
         prepare([VariantRequest(fine), VariantRequest(fine)], installed())
 
 
