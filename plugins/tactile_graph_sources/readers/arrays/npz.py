@@ -276,14 +276,14 @@ def _foreign(reading: Reading, arrays: Archive) -> Held:
     masks = masks_among(outlines, arrays.load)
     values, what, known = _only(reading, arrays, masks)
     masks.pop(reading.told.sensor, None)
-    values, masks = without_invalid(reading, values, masks)
+    values, of_frames = without_invalid(reading, values, masks)
     lines = {n: t.kind for n, (s, t) in outlines.items() if len(s) == 1}
     time = time_among(n for n, kind in lines.items() if kind in "iufMm")
     time = time or time_among(n for n, kind in lines.items() if kind in "US")
     small = [n for n, (s, t) in outlines.items() if math.prod(s) in (1, 2) and t.kind in "iufUS"]
     said = described_by({n: arrays.load(n) for n in small})
     times = arrays.load(time) if time else None
-    return Held(values, what, said, times, time, known, masks=masks)
+    return Held(values, what, said, times, time, known, masks=of_frames)
 
 
 def _only(reading: Reading, arrays: Archive, masks: Masks) -> tuple[NDArray[Any], str, bool]:
