@@ -106,9 +106,9 @@ class Frame:
     ) -> Frame:
         """Return a frame around a copy of ``values``, shape (rows, columns).
 
-        Cells that are NaN, infinite, beyond 1e100 or masked (of a NumPy masked array) become
-        invalid and hold 0; squares of larger ones are no numbers any more. Those nearer to 0 than
-        1e-100 hold 0 for the same reason.
+        Cells that are NaN, pandas' NA, infinite, beyond 1e100 or masked (of a NumPy masked array)
+        become invalid and hold 0; squares of larger ones are no numbers any more. Those nearer to 0
+        than 1e-100 hold 0 for the same reason.
 
         Raises
         ------
@@ -169,6 +169,8 @@ def _real(values: NDArray[Any]) -> NDArray[np.float64]:
     if isinstance(values, list | tuple) and any(isinstance(r, np.ma.MaskedArray) for r in values):
         values = np.ma.array(values)
     given = np.asarray(values)
+    if given.dtype.kind == "O" and given.size:  # pandas' word for a missing number is none
+        given = np.frompyfunc(lambda x: np.nan if type(x).__name__ == "NAType" else x, 1, 1)(given)
     if given.dtype.kind not in "biufO" or (given.dtype.kind == "O" and np.iscomplexobj(given)):
         raise ValueError(f"a frame takes real numbers, got {given.dtype.name}")
     try:

@@ -237,3 +237,14 @@ def test_a_truth_is_a_tuple_of_true_objects() -> None:
     true = TrueObject(disc)
     assert Frame.of(np.eye(2), truth=[true]).truth == Frame.of(np.eye(2), truth=(true,)).truth
     assert Frame.of(np.eye(2), truth=()).truth == ()
+
+
+@pytest.mark.slow
+def test_what_pandas_says_is_missing_is_invalid_as_nan_is() -> None:
+    pandas = pytest.importorskip("pandas")
+    table = pandas.DataFrame({"a": [1, 2], "b": [3, None]}, dtype="Int64")
+    for given in (table, table.to_numpy(), table.astype("Float64")):
+        image = Frame.of(given).image
+        assert image.values.tolist() == [[1.0, 3.0], [2.0, 0.0]]
+        assert image.valid is not None
+        assert image.valid.tolist() == [[True, True], [True, False]]
