@@ -117,9 +117,16 @@ class Results(Iterator[Result]):
         rows: list[dict[str, Any]] = []
         quantities: set[str] = set()
         taken_before, self._told = self._taken, False
-        for result in self:
-            quantities.add(result.frame.image.quantity)
-            rows += table.rows(result)
+        n_frames = 0
+        try:
+            for result in self:
+                quantities.add(result.frame.image.quantity)
+                rows += table.rows(result)
+                n_frames += 1
+        except Exception as error:
+            told = "taken one by one, their results are kept"
+            error.add_note(f"{n_frames} frames came before that, and their rows are lost; {told}")
+            raise
         if taken_before and not quantities:
             raise UsageError(
                 "no frames are left: all results of the stream were taken before; "
