@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from tactile_graph.api.result import Result as Result
     from tactile_graph.errors import Degenerate as Degenerate
     from tactile_graph.errors import Skip as Skip
+    from tactile_graph.errors import SourceWarning as SourceWarning
     from tactile_graph.errors import TactileGraphError as TactileGraphError
     from tactile_graph.plugins.hookspecs import hookimpl as hookimpl
     from tactile_graph.wires import Circle as Circle
@@ -34,6 +35,7 @@ _HOMES = {
     "Rectangle": "wires.shapes",
     "Result": "api.result",
     "Skip": "errors",
+    "SourceWarning": "errors",
     "TactileGraphError": "errors",
     "hookimpl": "plugins.hookspecs",
     "load": "api.pipeline",

@@ -55,6 +55,10 @@ class FrameError(UsageError, ValueError):
     """Something handed in as a frame that makes none."""
 
 
+class SourceWarning(UserWarning):
+    """What a source leaves out or assumes, for who takes its frames without a report."""
+
+
 class PluginError(TactileGraphError):
     """A plugin that breaks the rules of the house, named by plugin and package."""
 

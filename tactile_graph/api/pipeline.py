@@ -223,6 +223,7 @@ class Pipeline(Graph):
         frames: Iterable[Frame | Image | NDArray[np.generic]] | None = None,
         only: Sequence[str] | None = None,
         seed: int = 0,
+        report: Report | None = None,
     ) -> Results:
         """Return the results of the frames, in order, as they are taken; stateful steps keep state.
 
@@ -236,6 +237,9 @@ class Pipeline(Graph):
             keep their number, by which steps draw their random ones.
         only, seed
             As in `run`.
+        report : Report, optional
+            Takes what the pipeline's own source reports, as ``report`` of the results has it
+            besides. Without it `SourceWarning` tells what is left out and assumed.
 
         Raises
         ------
@@ -247,9 +251,12 @@ class Pipeline(Graph):
 
         runner = self.runner(only, seed)
         asked = tuple(runner.plan.asked)
-        given = self.frames(seed) if frames is None else as_frames(frames)
-        source = given if frames is None else frames
-        return Results(self, asked, self.results(given, runner), source)
+        told = Report() if report is None else report
+        if frames is None:
+            given = frames = self._opened(seed, told, in_stacks=False, warns=report is None)
+        else:
+            given = as_frames(frames)
+        return Results(self, asked, self.results(given, runner), frames, told)
 
     def live(
         self,
@@ -372,6 +379,9 @@ class Pipeline(Graph):
     def frames(self, seed: int = 0, report: Report | None = None) -> Iterator[Frame]:
         """Return the frames of the pipeline's own source.
 
+        Without a ``report``, which takes what it has to say, `SourceWarning` tells what is left
+        out and assumed.
+
         Raises
         ------
         UsageError
@@ -379,20 +389,22 @@ class Pipeline(Graph):
         DataError
             If the source raises what is not for people.
         """
-        return self._opened(seed, report, in_stacks=False)
+        return self._opened(seed, report or Report(), in_stacks=False, warns=report is None)
 
     def frames_in_stacks(
         self, seed: int = 0, report: Report | None = None
     ) -> Iterator[Frame | FrameStack]:
         """Return the same frames, many at once where the source has them so; for `blocks`."""
-        return self._opened(seed, report, in_stacks=True)
+        return self._opened(seed, report or Report(), in_stacks=True, warns=report is None)
 
-    def _opened(self, seed: int, report: Report | None, in_stacks: bool) -> Iterator[Any]:
+    def _opened(self, seed: int, report: Report, in_stacks: bool, warns: bool) -> Iterator[Any]:
         if self.source is None:
             raise UsageError(f"pipeline {self.name!r} declares no source: give it frames")
+        from tactile_graph.api.warned import warned
         from tactile_graph.engine.calls.sources import open_source
 
-        return open_source(self.source, checked_seed(seed), report or Report(), in_stacks)
+        frames = open_source(self.source, checked_seed(seed), report, in_stacks)
+        return warned(frames, self.source.name, report) if warns else frames
 
     # -- variants ----------------------------------------------------------------------------
 

@@ -19,6 +19,16 @@ class Result(Outcomes):
 
     __slots__ = ()
 
+    @property
+    def ok(self) -> bool:
+        """Whether every output asked for has a value, and every item of its lists.
+
+        A value that is not finite is none, as for the exit code of ``run``.
+        """
+        from tactile_graph.engine.tables.strange import strange_within
+
+        return super().ok and not any(map(strange_within, self.values()))
+
     def row(self) -> dict[str, Any]:
         """Return the outputs flattened into named scalars, as tables and CSV have them."""
         from tactile_graph.engine.tables.rows import result_row

@@ -10,6 +10,7 @@ import numpy as np
 from tactile_graph.api.result import Result
 from tactile_graph.errors import UsageError, without
 from tactile_graph.pipeline.graph import Graph
+from tactile_graph.steps.injected import Report
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,6 +31,8 @@ class Results(Iterator[Result]):
     results : iterator of Result
     source : iterable, optional
         Where the frames come from; a generator is closed with the stream.
+    report : Report, optional
+        Of that source; an empty one where frames were handed in.
     """
 
     def __init__(
@@ -38,7 +41,9 @@ class Results(Iterator[Result]):
         asked: tuple[str, ...],
         results: Iterator[Result],
         source: Iterable[Any] = (),
+        report: Report | None = None,
     ) -> None:
+        self.report = report or Report()
         self._pipeline = pipeline
         self._asked = asked
         self._results = results
@@ -112,9 +117,16 @@ class Results(Iterator[Result]):
         rows: list[dict[str, Any]] = []
         quantities: set[str] = set()
         taken_before, self._told = self._taken, False
-        for result in self:
-            quantities.add(result.frame.image.quantity)
-            rows += table.rows(result)
+        n_frames = 0
+        try:
+            for result in self:
+                quantities.add(result.frame.image.quantity)
+                rows += table.rows(result)
+                n_frames += 1
+        except Exception as error:
+            told = "taken one by one, their results are kept"
+            error.add_note(f"{n_frames} frames came before that, and their rows are lost; {told}")
+            raise
         if taken_before and not quantities:
             raise UsageError(
                 "no frames are left: all results of the stream were taken before; "

@@ -17,6 +17,7 @@ from tactile_graph.compiled import Kernel, plain_and_noted, warm_up
 from tactile_graph.compiled.race import Race
 from tactile_graph.plugins import registry
 from tactile_graph.plugins.devices import reads_device
+from tactile_graph.steps.injected import Report
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
@@ -59,7 +60,7 @@ def compile_ahead(pipelines: list[Pipeline]) -> None:
     """Compile what the first frames of pipelines need, as long as that helps."""
     needed = Needed()
     with plain_and_noted(needed.note):
-        streams = [islice(p.stream(), FRAMES) for p in pipelines]
+        streams = [islice(p.stream(report=Report()), FRAMES) for p in pipelines]
         for _ in zip_longest(*streams):
             if not needed.compile_new():
                 return  # plain code would only take the processor away

@@ -142,6 +142,7 @@ class Feed:
         if self._ranges is not None and not self._is_ended:
             self._is_ended = True
             self._report.counts.update(self._said.counts)
+            self._report.assumed.update(self._said.assumed)
             self._report.counts["frames"] += n_frames
             self._report.digests.update(self._said.digests)
 

@@ -44,6 +44,8 @@ class Report:
 
     Attributes
     ----------
+    counts, troubles, assumed
+        What `count`, `trouble` and `assume` were told, in order.
     n_places : int or None
         How many frames the recordings hold, those that were left out too (`Frame.place`); None
         until they are read to their end.
@@ -62,6 +64,7 @@ class Report:
     ) -> None:
         self.counts: Counter[str] = Counter()
         self.troubles: list[tuple[str, str]] = []
+        self.assumed: dict[str, None] = {}
         self.n_expected: int | None = None
         self.n_places: int | None = None
         self.digests: dict[str, str] = {}
@@ -74,6 +77,11 @@ class Report:
     def count(self, what: str, n: int = 1) -> None:
         """Add ``n`` to the counter ``what``."""
         self.counts[what] += n
+
+    def assume(self, what: str) -> None:
+        """Count ``what``, which nobody said and is taken to be so: people are warned of it."""
+        self.count(what)
+        self.assumed[what] = None
 
     def trouble(self, where: str, what: str) -> None:
         """Note that ``what`` was wrong at ``where`` (file and line, or port) and was left out."""

@@ -219,7 +219,7 @@ def spoiled(value: Any, number: float | None) -> Any:
 
 def _frame(quantity: str) -> Maker:
     return lambda case: Frame(
-        case.image(quantity), 0, 0.0, (TrueObject(_circle(case), 100.0, "disc"),)
+        case.image(quantity), 0, 0.0, (TrueObject(Circle(*_lengths(case)), 100.0, "disc"),)
     )
 
 

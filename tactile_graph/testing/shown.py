@@ -71,7 +71,11 @@ def _drawn(value: Any) -> None:
 
 def _measured(shape: Any) -> None:
     """Hold a shape against itself: it is not off."""
-    for name, off in errors_against(shape, TrueObject(shape)).items():
+    try:
+        true = TrueObject(shape)
+    except ValueError:  # without a place or a size, no object can lie so
+        return
+    for name, off in errors_against(shape, true).items():
         if math.isfinite(off) and abs(off) > 1e-9:
             raise ValueError(f"{name} of a shape against itself is {off:g}, not 0")
 

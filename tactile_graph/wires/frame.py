@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.errors import shown
 from tactile_graph.wires.checked import (
     LARGEST,
     check_place_in_time,
@@ -18,7 +19,7 @@ from tactile_graph.wires.checked import (
 )
 from tactile_graph.wires.image import Image, Mask
 from tactile_graph.wires.measure import Measured
-from tactile_graph.wires.shapes import Shape, longer_side_first
+from tactile_graph.wires.shapes import Shape, check_true, longer_side_first
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,11 @@ class TrueObject:
     Its shape may be a plugin's own, which says by ``error_measures`` how it is measured. A
     rectangle or ellipse given with its shorter side first is turned by a quarter: it is the same
     shape, and answers are held against its longer side.
+
+    Raises
+    ------
+    ValueError
+        If its place or size is no finite number, or a size is less than 0.
     """
 
     shape: Shape | Measured
@@ -35,6 +41,7 @@ class TrueObject:
     name: str = ""
 
     def __post_init__(self) -> None:
+        check_true(self.shape)
         object.__setattr__(self, "shape", longer_side_first(self.shape))
 
 
@@ -99,16 +106,17 @@ class Frame:
     ) -> Frame:
         """Return a frame around a copy of ``values``, shape (rows, columns).
 
-        Cells that are NaN, infinite, beyond 1e100 or masked (of a NumPy masked array) become
-        invalid and hold 0; squares of larger ones are no numbers any more. Those nearer to 0 than
-        1e-100 hold 0 for the same reason.
+        Cells that are NaN, pandas' NA, infinite, beyond 1e100 or masked (of a NumPy masked array)
+        become invalid and hold 0; squares of larger ones are no numbers any more. Those nearer to 0
+        than 1e-100 hold 0 for the same reason.
 
         Raises
         ------
         ValueError
             If values are no real numbers, an image, or have no rows and columns, the pitch is not
             within 1e-6 to 1e6 cm, the origin not within 1e9 cm, a time not finite, the index no
-            whole number from 0 on, the label no text, or nobody knows the quantity.
+            whole number from 0 on, the label no text, the truth no tuple of `TrueObject`, or nobody
+            knows the quantity.
         """
         copy = _real(values)
         if copy.ndim != 2 or 0 in copy.shape:
@@ -121,6 +129,8 @@ class Frame:
         copy[size < 1.0 / LARGEST] = 0.0
         pitch, origin = checked_pitch(pitch_cm), checked_origin(origin_cm)
         check_place_in_time(rest)
+        if rest.get("truth") is not None:
+            rest["truth"] = _objects(rest["truth"])
         return cls(Image(copy, pitch, origin, checked_name(quantity), valid), **rest)
 
     def with_index(self, index: int) -> Frame:
@@ -140,6 +150,16 @@ class Frame:
         return frame_html(self)
 
 
+def _objects(truth: Any) -> tuple[TrueObject, ...]:
+    """Return what truly lay on the pad; errors as of `Frame.of`."""
+    listed = isinstance(truth, list | tuple)
+    for one in truth if listed else (truth,):
+        if not (listed and isinstance(one, TrueObject)):
+            hint = "(TrueObject(…),)" if isinstance(one, TrueObject) else "TrueObject(shape)"
+            raise ValueError(f"truth is a tuple of TrueObject, got {shown(one)}; give {hint}")
+    return tuple(truth)
+
+
 def _real(values: NDArray[Any]) -> NDArray[np.float64]:
     """Return a copy as float64, NaN in masked cells; errors as of `Frame.of`."""
     if isinstance(values, Image):
@@ -149,6 +169,8 @@ def _real(values: NDArray[Any]) -> NDArray[np.float64]:
     if isinstance(values, list | tuple) and any(isinstance(r, np.ma.MaskedArray) for r in values):
         values = np.ma.array(values)
     given = np.asarray(values)
+    if given.dtype.kind == "O" and given.size:  # pandas' word for a missing number is none
+        given = np.frompyfunc(lambda x: np.nan if type(x).__name__ == "NAType" else x, 1, 1)(given)
     if given.dtype.kind not in "biufO" or (given.dtype.kind == "O" and np.iscomplexobj(given)):
         raise ValueError(f"a frame takes real numbers, got {given.dtype.name}")
     try:

@@ -14,6 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tactile_graph.errors import shown
 from tactile_graph.wires.measure import Measure, axis_off_deg
 from tactile_graph.wires.measure import printed_angle_deg as printed_angle_deg
 from tactile_graph.wires.native import NATIVE, native
@@ -198,6 +199,33 @@ def quick_polygon(xy_cm: NDArray[np.float64]) -> Polygon:
 _new = object.__new__
 
 Shape = Circle | Ellipse | Rectangle | Polygon
+
+
+_SIZES = {
+    Circle: ("radius_cm",),
+    Ellipse: ("semi_major_cm", "semi_minor_cm", "angle_rad"),
+    Rectangle: ("length_cm", "breadth_cm", "angle_rad"),
+}
+
+
+def check_true(shape: Any) -> None:
+    """Check a shape that truly lay on a pad; those of plugins are taken as they are.
+
+    Raises
+    ------
+    ValueError
+        If its place or size is no finite number, or a size is less than 0.
+    """
+    for name in ("x_cm", "y_cm", *sizes) if (sizes := _SIZES.get(type(shape))) else ():
+        value = getattr(shape, name)
+        try:
+            finite = math.isfinite(value)
+        except TypeError:
+            finite = False
+        if not finite or (value < 0.0 and name not in ("x_cm", "y_cm", "angle_rad")):
+            must = "a finite number" if not finite else "at least 0"
+            kind = type(shape).__name__
+            raise ValueError(f"a true {kind}: {name} must be {must}, got {shown(value)}")
 
 
 def longer_side_first(shape: Any) -> Any:

@@ -473,9 +473,10 @@ def test_each_recording_and_each_sensor_starts_state_anew(tmp_path: Path) -> Non
     mats = {"LF": np.full((3, 6, 5), 10.0), "RF": np.full((3, 4, 5), 30.0)}
     write(tmp_path, xsensor_text(mats), "x.csv")
     pipeline = loads(TARED).with_source("recording", path=[tmp_path / "a.npz", tmp_path / "b.npz"])
-    results = [r["tared"].peak for r in pipeline.stream() if "tared" in r]
+    results = [r["tared"].peak for r in pipeline.stream(report=Report()) if "tared" in r]
     assert results == [0.0, 7.0, 0.0, 7.0]
-    of_sensors = [*pipeline.with_source("recording", path=tmp_path / "x.csv").stream()]
+    of_sensors = pipeline.with_source("recording", path=tmp_path / "x.csv")
+    of_sensors = [*of_sensors.stream(report=Report())]
     assert [r["tared"].peak for r in of_sensors if "tared" in r] == [0.0] * 4
     assert not any(isinstance(r.outcome("tared"), Failed) for r in of_sensors)
 

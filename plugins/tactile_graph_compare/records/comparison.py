@@ -29,7 +29,8 @@ class Variant:
     pipeline : Pipeline
         As it ran.
     given : str
-        As it can be given again on a command line.
+        As it can be given again on a command line; empty where none can, for the pipeline is a
+        program's own.
     asked : tuple of str
         The outputs that were asked for.
     parent : str

@@ -26,16 +26,31 @@ def provenance(comparison: Comparison) -> Html:
     ]
     body = tag("tbody", (_row(k, v) for k, v in rows))
     caption = tag("caption", tag("b", "Versions and source"))
-    again = "To make it again:"
-    if not _step(told):
-        again = "The frames were handed in by a program. With a recording of them it is made by:"
     return join(
-        tag("p", again),
-        tag("pre", tag("code", command(comparison)), class_="command"),
+        _again(comparison),
         details("Versions and source", tag("table", caption, body, class_="data words")),
         [_variant(label, v) for label, v in (told.get("variants") or {}).items()],
         details("All of it, as data", tag("pre", _plain(told))),
     )
+
+
+def _again(comparison: Comparison) -> Html:
+    """Return the command that makes it again, or why there is none."""
+    own = [v.label for v in comparison.variants if not v.given]
+    if own and not _typed(comparison.provenance):
+        told = "Made by a program, and no command makes it again, for no installed pipeline or file"
+        return tag("p", f"{told} is what it ran as: {', '.join(own)}.")
+    again = "To make it again:"
+    if not _step(comparison.provenance):
+        again = "The frames were handed in by a program. With a recording of them it is made by:"
+    return join(tag("p", again), tag("pre", tag("code", command(comparison)), class_="command"))
+
+
+def _typed(told: Mapping[str, Any]) -> list[str]:
+    """Return the words of the command that was typed; none where a program compared."""
+    typed = [str(w) for w in told.get("command") or ()]
+    ours = typed and Path(typed[0]).stem in ("tactile-graph", "__main__") and "compare" in typed
+    return typed if ours else []
 
 
 def _row(name: str, value: object) -> Html:
@@ -54,8 +69,7 @@ def _plain(value: Any) -> str:
 def command(comparison: Comparison) -> str:
     """Return what to type: what was typed, or where nothing was, what amounts to it."""
     told = comparison.provenance
-    typed = [str(w) for w in told.get("command") or ()]
-    if typed and Path(typed[0]).stem in ("tactile-graph", "__main__") and "compare" in typed:
+    if typed := _typed(told):
         return pasted_words(["tactile-graph", *typed[1:]])
     words = ["tactile-graph", "compare", *(v.given for v in comparison.variants)]
     if _step(told):

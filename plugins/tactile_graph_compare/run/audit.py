@@ -10,12 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tactile_graph import Image, Pipeline
+from tactile_graph import Image, Pipeline, load
 from tactile_graph.inspect import NO_VALUE, as_data
 from tactile_graph.many import Portion, Reading
 from tactile_graph.wires.frame import Frame
@@ -94,7 +95,7 @@ class Audit:
 
 
 def audit(
-    pipeline: Pipeline,
+    pipeline: Pipeline | str | Path,
     frames: Iterable[Frame | Image | NDArray[np.generic]] | None = None,
     *,
     asked: tuple[str, ...] = (),
@@ -105,7 +106,8 @@ def audit(
 
     Parameters
     ----------
-    pipeline : Pipeline
+    pipeline : Pipeline, str or Path
+        Itself, or its name or file.
     frames : iterable of Frame, Image or ndarray, optional
         The pipeline's own source if not given.
     asked, sample, seed
@@ -115,11 +117,15 @@ def audit(
     ------
     RuleError
         If a frame breaks a rule of a step.
+    UsageError, PipelineError
+        If there is no such pipeline, or it is none.
 
     Notes
     -----
     Guards inside a pipeline that is run over a list (``use`` with ``each``) are not audited.
     """
+    if not isinstance(pipeline, Pipeline):
+        pipeline = load(pipeline)
     if frames is None:
         frames = pipeline.frames(seed)
     else:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph import Image, Pipeline
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import UsageError, shown
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.injected import Report
 from tactile_graph.wires.frame import Frame
@@ -27,9 +27,9 @@ from tactile_graph_compare.variants.one_source import (
     on_source,
     without_source,
 )
-from tactile_graph_compare.variants.prepare import PreparedVariant, prepare, referred
+from tactile_graph_compare.variants.prepare import CALLED, PreparedVariant, prepare, referred
 from tactile_graph_compare.variants.request import VariantRequest, parse_request
-from tactile_graph_compare.variants.sweeps import Sweep
+from tactile_graph_compare.variants.sweeps import sweep_of
 
 Given = str | Path | Pipeline | VariantRequest
 READING = "source='recording', source_settings={{'path': {path!r}}}"
@@ -90,8 +90,12 @@ def compare(
     """
     found = registry or installed()
     requests = [_request(v, found) for v in _each(variants)]
-    swept = [Sweep(name, tuple(values)) for name, values in (sweeps or {}).items()]
-    prepared = prepare(requests, found, settings, swept, crossed, lineage)
+    if n_frames is not None:
+        n_frames = _checked_count(n_frames)
+    _check_named("settings", settings)
+    _check_named("sweeps", sweeps)
+    swept = [sweep_of(*one) for one in (sweeps or {}).items()]
+    prepared = prepare(requests, found, settings, swept, crossed, lineage, CALLED)
     report, notes = Report(), list[str]()
     if frames is None:
         prepared, notes = _on_one_source(prepared, source, source_settings, n_frames)
@@ -101,7 +105,7 @@ def compare(
     else:
         frames = as_frames(frames, READING)
         prepared = without_source(prepared)
-    session = Session(prepared, seed, chooser, reference and referred(prepared, reference))
+    session = Session(prepared, seed, chooser, reference and referred(prepared, reference, CALLED))
     for frame in session.warmed(islice(frames, n_frames)):
         session.add(frame)
     return summarise(session, report, notes=notes)
@@ -117,7 +121,7 @@ def _on_one_source(
     notes: list[str] = []
     given = dict(settings or {})
     if source is None:
-        first, notes = first_source(prepared)
+        first, notes = first_source(prepared, "frames or source")
         assert first.pipeline.source is not None
         source, own = first.pipeline.source.name, first.pipeline.source.given
         if n_frames is not None:
@@ -126,6 +130,17 @@ def _on_one_source(
     if n_frames is not None and COUNT not in given:
         given |= {COUNT: n_frames} if makes_frames(prepared[0].pipeline, source) else {}
     return on_source(prepared, source, given), notes
+
+
+def _check_named(what: str, given: Any) -> None:
+    if given is not None and not isinstance(given, Mapping):
+        raise UsageError(f"{what} must be a mapping of names, node.setting, got {shown(given)}")
+
+
+def _checked_count(n_frames: Any) -> int:
+    if isinstance(n_frames, bool) or not isinstance(n_frames, int | np.integer) or n_frames < 1:
+        raise UsageError(f"n_frames: must be a whole number >= 1, got {shown(n_frames)}")
+    return int(n_frames)
 
 
 def _each(variants: Sequence[Given] | Given) -> Sequence[Given]:

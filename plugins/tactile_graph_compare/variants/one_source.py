@@ -15,8 +15,16 @@ COUNT = "frames"
 """The setting by which a source that makes its frames is told how many."""
 
 
-def first_source(prepared: Sequence[PreparedVariant]) -> tuple[PreparedVariant, list[str]]:
+def first_source(
+    prepared: Sequence[PreparedVariant], remedy: str = "recordings or --source"
+) -> tuple[PreparedVariant, list[str]]:
     """Return the first variant that declares a source, and what people should know of that.
+
+    Parameters
+    ----------
+    prepared : sequence of PreparedVariant
+    remedy : str
+        What to give where none does.
 
     Raises
     ------
@@ -25,7 +33,7 @@ def first_source(prepared: Sequence[PreparedVariant]) -> tuple[PreparedVariant, 
     """
     first = next((p for p in prepared if p.pipeline.source is not None), None)
     if first is None or first.pipeline.source is None:
-        raise UsageError("none of the pipelines declares a source: give recordings or --source")
+        raise UsageError(f"none of the pipelines declares a source: give {remedy}")
     others = [p.label for p in prepared if not _same_source(p.pipeline, first.pipeline)]
     if not others:
         return first, []

@@ -5,19 +5,40 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from tactile_graph import Pipeline, load
 from tactile_graph.errors import PipelineError, UsageError, did_you_mean, one_of
 from tactile_graph.inspect import Graph, idle_settings, plain
 from tactile_graph.plugins.registry import Registry, installed
-from tactile_graph_compare.variants.request import VariantRequest, as_yaml, spelled
+from tactile_graph_compare.variants.request import (
+    VariantRequest,
+    as_yaml,
+    name_of,
+    spelled,
+)
 from tactile_graph_compare.variants.sweeps import Sweep, combinations
+
+
+class Words(NamedTuple):
+    """What people call what they give, on a command line or in a program."""
+
+    settings: str
+    sweeps: str
+    crossed: str
+    reference: str
+
+
+TYPED = Words("--set", "--sweep", "--product", "--reference")
+CALLED = Words("settings", "sweeps", "crossed=True", "reference")
 
 
 @dataclass(frozen=True, eq=False)
 class PreparedVariant:
-    """A variant ready to run: its pipeline, its label, and how to ask for it again."""
+    """A variant ready to run: its pipeline, its label, and how to ask for it again.
+
+    ``given`` is empty where no command can: the pipeline is a program's own.
+    """
 
     label: str
     pipeline: Pipeline
@@ -31,7 +52,7 @@ class _Loaded:
     request: VariantRequest
     pipeline: Pipeline
     settings: Mapping[str, Any]
-    """All that was set of it: its own, the common ones, those of sweeps."""
+    """All that was set of it: in the pipeline handed in, its own, the common ones, of sweeps."""
 
 
 def prepare(
@@ -41,6 +62,7 @@ def prepare(
     sweeps: Sequence[Sweep] = (),
     crossed: bool = False,
     lineage: bool = False,
+    words: Words = TYPED,
 ) -> list[PreparedVariant]:
     """Return the variants, each with its label.
 
@@ -56,6 +78,8 @@ def prepare(
         Whether several sweeps are crossed with one another instead of going side by side.
     lineage : bool
         Whether the pipelines that those asked for evolved from are compared too, before them.
+    words : Words
+        What these are called where they come from, for errors.
 
     Raises
     ------
@@ -68,20 +92,21 @@ def prepare(
     if lineage:
         loaded = list(_with_parents(loaded, registry))
     common = settings or {}
-    _check_names([*common], [x.pipeline for x in loaded], "--set")
+    _check_names([*common], [x.pipeline for x in loaded], words.settings)
     swept = [x.pipeline for x in loaded if x.request.swept]
-    _check_names([s.name for s in sweeps], swept, "--sweep")
-    _check_effect([s.name for s in sweeps], [x for x in loaded if x.request.swept])
+    _check_names([s.name for s in sweeps], swept, words.sweeps)
+    _check_effect([s.name for s in sweeps], [x for x in loaded if x.request.swept], words.sweeps)
     loaded = [_set(x, {k: v for k, v in common.items() if has_setting(x.pipeline, k)})
               for x in loaded]  # fmt: skip
-    everything = [y for x in loaded for y in _swept(x, sweeps, crossed)]
+    everything = [y for x in loaded for y in _swept(x, sweeps, crossed, words)]
     return _with_parent_labels([_prepared(x, everything) for x in everything], everything)
 
 
 def _load(request: VariantRequest, registry: Registry) -> _Loaded:
     name = request.name
     pipeline = name if isinstance(name, Pipeline) else load(name, registry)
-    return _set(_Loaded(request, pipeline, {}), request.settings)
+    own = {f"{node}.{k}": v for node, given in pipeline.overrides.items() for k, v in given.items()}
+    return _set(_Loaded(request, pipeline, own), request.settings)
 
 
 def _set(loaded: _Loaded, settings: Mapping[str, Any]) -> _Loaded:
@@ -108,16 +133,18 @@ def _with_parents(loaded: Sequence[_Loaded], registry: Registry) -> Iterator[_Lo
         yield one
 
 
-def _swept(loaded: _Loaded, sweeps: Sequence[Sweep], crossed: bool) -> Iterator[_Loaded]:
+def _swept(
+    loaded: _Loaded, sweeps: Sequence[Sweep], crossed: bool, words: Words
+) -> Iterator[_Loaded]:
     own = [s for s in sweeps if loaded.request.swept and has_setting(loaded.pipeline, s.name)]
     if not own:
         yield loaded
         return
-    for settings in combinations(own, crossed):
+    for settings in combinations(own, crossed, words.crossed):
         yield _set(loaded, settings)
 
 
-def referred(prepared: Sequence[PreparedVariant], name: str) -> str:
+def referred(prepared: Sequence[PreparedVariant], name: str, words: Words = TYPED) -> str:
     """Return the label of the variant that is meant, by its label or as it was given.
 
     Raises
@@ -130,7 +157,9 @@ def referred(prepared: Sequence[PreparedVariant], name: str) -> str:
             return one.label
     labels = [p.label for p in prepared]
     hint = did_you_mean(name, labels)
-    raise UsageError(f"--reference {name}: must be one of the variants: {one_of(labels)}{hint}")
+    raise UsageError(
+        f"{words.reference} {name}: must be one of the variants: {one_of(labels)}{hint}"
+    )
 
 
 # -- settings by name ------------------------------------------------------------------------
@@ -159,14 +188,14 @@ def _check_names(names: Sequence[str], pipelines: Sequence[Pipeline], option: st
             raise UsageError(f"{option} {name}: none of the pipelines has it{hint}")
 
 
-def _check_effect(names: Sequence[str], swept: Sequence[_Loaded]) -> None:
+def _check_effect(names: Sequence[str], swept: Sequence[_Loaded], option: str) -> None:
     """Refuse a sweep of which all variants would be alike."""
     for name in names:
         having = [x for x in swept if has_setting(x.pipeline, name)]
         if all(idle_settings(x.pipeline, [name], x.request.only) for x in having):
             node = name.rpartition(".")[0]
             raise UsageError(
-                f"--sweep {name}: all variants would be alike, for no output that is asked for"
+                f"{option} {name}: all variants would be alike, for no output that is asked for"
                 f" needs {node!r}"
             )
 
@@ -179,13 +208,13 @@ def _prepared(one: _Loaded, everything: Sequence[_Loaded]) -> PreparedVariant:
     for name in only:
         pipeline.ref(name)  # says what is wrong with it
     named = one.request.name
-    given = spelled(pipeline.name if isinstance(named, Pipeline) else str(named),
-                    one.settings, only)  # fmt: skip
+    name = name_of(named) if isinstance(named, Pipeline) else str(named)
+    words = spelled(name or pipeline.name, one.settings, only)
     label = _label(one)
     if sum(_label(other) == label for other in everything) > 1:
-        label = given.strip("'")
+        label = words.strip("'")
     asked = only or tuple(pipeline.outputs)
-    return PreparedVariant(label, pipeline, asked, given)
+    return PreparedVariant(label, pipeline, asked, words if name else "")
 
 
 def _label(one: _Loaded) -> str:

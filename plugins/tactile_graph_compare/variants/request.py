@@ -14,8 +14,8 @@ from tactile_graph import Pipeline
 from tactile_graph.errors import UsageError
 from tactile_graph.foreign_text import pasted
 from tactile_graph.inspect import plain
-from tactile_graph.pipeline.document import assignment
-from tactile_graph.plugins.registry import Registry
+from tactile_graph.pipeline.document import assignment, text_of_file
+from tactile_graph.plugins.registry import Registry, installed
 
 
 @dataclass(frozen=True)
@@ -99,6 +99,27 @@ def _split(text: str) -> list[str]:
     if os.name == "nt":
         words.escape = ""
     return list(words)
+
+
+def name_of(pipeline: Pipeline) -> str:
+    """Return the name or file that a command knows a pipeline by; "" for one of a program's own.
+
+    That is one made of a text, or with a registry or steps that no command has.
+    """
+    place, found = Path(pipeline.files.place(pipeline.file)), installed()
+    if (pipeline.registry or found) is not found or not _holds(place, pipeline.text):
+        return ""
+    for name in found.names("pipelines"):
+        if os.path.abspath(found.path("pipelines", name)) == os.path.abspath(place):
+            return name
+    return pipeline.file if os.path.abspath(pipeline.file) == os.path.abspath(place) else str(place)
+
+
+def _holds(place: Path, text: str) -> bool:
+    try:
+        return place.is_file() and text_of_file(place) == text
+    except (OSError, UnicodeDecodeError, UsageError):
+        return False
 
 
 def spelled(name: str, settings: Mapping[str, Any], only: tuple[str, ...]) -> str:

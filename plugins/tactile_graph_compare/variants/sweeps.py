@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal, DecimalException
 from itertools import product
 from typing import Any
 
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import UsageError, shown
+from tactile_graph.inspect import plain
 from tactile_graph.pipeline.document import read_document
 
 MOST_VALUES = 500
@@ -73,8 +74,36 @@ def _list(text: str, given: str) -> tuple[Any, ...]:
     return tuple(values)
 
 
-def combinations(sweeps: Sequence[Sweep], crossed: bool) -> Iterator[Mapping[str, Any]]:
+def sweep_of(name: str, values: Any) -> Sweep:
+    """Return the sweep of a setting over values that a program gives.
+
+    Raises
+    ------
+    UsageError
+        If they are no values one after the other, none, or one of them twice.
+    """
+    if isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable):
+        raise UsageError(f"sweeps: {name} must be a list of values, got {shown(values)}")
+    found = tuple(values)
+    if not found:
+        raise UsageError(f"sweeps: {name} has no values")
+    plain_ones = [plain(v) for v in found]
+    if any(plain_ones.count(v) > 1 for v in plain_ones):
+        raise UsageError(f"sweeps: {name}: a value stands there twice")
+    return Sweep(name, found)
+
+
+def combinations(
+    sweeps: Sequence[Sweep], crossed: bool, crosses: str = "--product"
+) -> Iterator[Mapping[str, Any]]:
     """Yield the settings of each variant of several sweeps: side by side, or all with all.
+
+    Parameters
+    ----------
+    sweeps : sequence of Sweep
+    crossed : bool
+    crosses : str
+        What is given to cross them, for errors.
 
     Raises
     ------
@@ -85,7 +114,7 @@ def combinations(sweeps: Sequence[Sweep], crossed: bool) -> Iterator[Mapping[str
     if not crossed and len(set(counts.values())) > 1:
         told = ", ".join(f"{name} has {n} values" for name, n in counts.items())
         raise UsageError(
-            f"sweeps go side by side, but {told}; --product crosses every value with every other"
+            f"sweeps go side by side, but {told}; {crosses} crosses every value with every other"
         )
     rows = product(*(s.values for s in sweeps)) if crossed else zip(*(s.values for s in sweeps),
                                                                      strict=True)  # fmt: skip

@@ -16,7 +16,7 @@ from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.steps.rules import Grid
 from tactile_graph.wires import Image, Mask, quick_mask
 from tactile_graph.wires.stacks import Answered, ImageStack, MaskStack
-from tactile_graph_filters.nan import refuse_nan
+from tactile_graph_filters.nan import refuse_nan, require_finite
 from tactile_graph_filters.thresholds.levelled_masks import LevelledMaskStack
 from tactile_graph_filters.thresholds.noise_level import (
     OWN_NOISE,
@@ -120,8 +120,10 @@ def levelled(image: Image) -> LevelledMask:
     ------
     Degenerate
         If no cell is valid, or there are too few to tell loads from noise.
+    DataError
+        If a valid cell holds NaN or infinity: no noise is told from either.
     """
-    refuse_nan(image)
+    require_finite(image)
     level = noise_level(image)
     mask = footprint(image, level)
     if mask.count == 0 and is_untold(image):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -127,6 +127,10 @@ class Reading:
     def assume(self, what: str) -> None:
         """Note, once for the file, what nobody said and is taken to be so."""
         self._once(f"recordings with {what}")
+
+    def heed(self, what: str) -> None:
+        """Note likewise what the file itself says, or its reader was asked for."""
+        self._once(f"recordings with {what}", self.report.count)
 
     def refuse_settings(self, *obeyed: str) -> None:
         """Refuse settings of columns and times but those ``obeyed``, for a file that has no use
@@ -424,10 +428,10 @@ class Reading:
             )
         return told or own
 
-    def _once(self, what: str) -> None:
+    def _once(self, what: str, told: Callable[[str], None] | None = None) -> None:
         if what not in self._fresh:
             self._fresh.add(what)
-            self.report.count(what)
+            (told or self.report.assume)(what)
 
 
 def _leave_out(names: list[str], why: str) -> str:

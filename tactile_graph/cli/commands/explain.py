@@ -9,6 +9,7 @@ import click
 from tactile_graph.cli.arguments import open_pipeline, pipeline_argument, source_options
 from tactile_graph.cli.endings import SOME_FAILED
 from tactile_graph.errors import UsageError
+from tactile_graph.steps.injected import Report
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
@@ -61,7 +62,7 @@ def _result(pipeline: Pipeline, only: tuple[str, ...], seed: int, number: int) -
     """Return the frame's result; steps that keep state see the frames before it, others do not."""
     runner = pipeline.runner(only, seed)
     n = 0
-    frames = pipeline.frames(seed)
+    frames = pipeline.frames(seed, Report())
     for frame in frames:
         if n == number:
             result = runner(frame)

@@ -19,6 +19,7 @@ from tactile_graph.errors import UsageError
 from tactile_graph.out_of_reach import end_safe_path, safe_path
 from tactile_graph.plugins import registry
 from tactile_graph.plugins.devices import reads_device
+from tactile_graph.steps.injected import Report
 
 if TYPE_CHECKING:
     from tactile_graph.api.pipeline import Pipeline
@@ -66,7 +67,7 @@ def prepare(pipelines: tuple[str, ...], jobs: int, recording: str | None) -> Non
     if recording is not None:
         if not pipelines:
             raise UsageError("name the pipelines that are prepared by --recording")
-        next(_reading(load(pipelines[0]), recording).frames(), None)
+        next(_reading(load(pipelines[0]), recording).frames(report=Report()), None)
     out = console()
     if jobs == 1:
         for name in names:

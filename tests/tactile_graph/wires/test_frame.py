@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import warnings
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 from tactile_graph import Frame, Image, Mask, Points
-from tactile_graph.wires import Ellipse, Rectangle, TrueObject
+from tactile_graph.wires import Circle, Ellipse, Rectangle, TrueObject
 
 
 def test_values_are_copied_and_frozen() -> None:
@@ -206,3 +207,44 @@ def test_masked_cells_of_rows_are_invalid_too(dtype: type) -> None:
         assert image.values.tolist() == [[1.0, 0.0], [3.0, 4.0]]
     assert masked.data[0, 1] == 65535
     assert Frame.of(np.ma.array([[1.0, 2.0]])).image.valid is None
+
+
+@pytest.mark.parametrize(
+    ("shape", "told"),
+    [
+        (Circle(math.nan, 1.0, 2.0), "a true Circle: x_cm must be a finite number, got nan"),
+        (Circle(1.0, 1.0, -2.0), "a true Circle: radius_cm must be at least 0, got -2.0"),
+        (Circle(1.0, "1", 2.0), "a true Circle: y_cm must be a finite number, got '1'"),
+        (Ellipse(1.0, 1.0, 2.0, -1.0, 0.0), "a true Ellipse: semi_minor_cm must be at least 0"),
+        (Rectangle(1.0, 1.0, math.inf, 1.0, 0.0), "a true Rectangle: length_cm must be a finite"),
+    ],
+)
+def test_what_truly_lay_there_has_a_place_and_a_size(shape: Any, told: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(told)):
+        TrueObject(shape)
+    assert TrueObject(Circle(-3, np.float32(1.0), 0)).weight_g is None
+
+
+def test_a_truth_is_a_tuple_of_true_objects() -> None:
+    disc = Circle(1.0, 1.0, 0.5)
+    for truth, told in (
+        (TrueObject(disc), r"truth is a tuple of TrueObject, got .*; give \(TrueObject\(…\),\)"),
+        ((disc,), r"truth is a tuple of TrueObject, got Circle.*; give TrueObject\(shape\)"),
+        ("circle", "truth is a tuple of TrueObject, got 'circle'"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            Frame.of(np.eye(2), truth=truth)
+    true = TrueObject(disc)
+    assert Frame.of(np.eye(2), truth=[true]).truth == Frame.of(np.eye(2), truth=(true,)).truth
+    assert Frame.of(np.eye(2), truth=()).truth == ()
+
+
+@pytest.mark.slow
+def test_what_pandas_says_is_missing_is_invalid_as_nan_is() -> None:
+    pandas = pytest.importorskip("pandas")
+    table = pandas.DataFrame({"a": [1, 2], "b": [3, None]}, dtype="Int64")
+    for given in (table, table.to_numpy(), table.astype("Float64")):
+        image = Frame.of(given).image
+        assert image.values.tolist() == [[1.0, 3.0], [2.0, 0.0]]
+        assert image.valid is not None
+        assert image.valid.tolist() == [[True, True], [True, False]]

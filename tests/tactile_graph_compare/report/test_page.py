@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from helpers_html import Element, read_html
-from tactile_graph import Frame, loads
+from tactile_graph import Frame, load, loads
 from tactile_graph.foreign_text import visible
 from tactile_graph_compare import Comparison, compare
 from tactile_graph_compare.output.export import as_json
@@ -243,6 +243,14 @@ def test_frames_that_were_handed_in_are_asked_for_as_a_recording() -> None:
     assert (
         command == "tactile-graph compare discs next.yaml RECORDING --seed 0 --report report.html"
     )
+
+
+def test_a_pipeline_that_no_command_can_name_is_told_in_place_of_a_command() -> None:
+    own = loads(f"{load('discs').text}\n# mine\n").with_settings({"footprint.level_v": 0.3})
+    section = checked(compare(["discs", own], n_frames=3)).one("section", id="making")
+    assert "no command makes it again" in section.text
+    assert "discs level_v=0.3" in section.text
+    assert "tactile-graph compare" not in section.text
 
 
 # -- names that would break a careless page ---------------------------------------------------

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from tactile_graph import Circle, Frame, loads
+from tactile_graph.errors import UsageError
 from tactile_graph.wires import TrueObject
 from tactile_graph_compare.run.audit import audit
 from tactile_graph_compare.variants.ablations import ablations_of
@@ -50,6 +53,16 @@ def test_a_guard_is_worth_what_its_ablation_runs_besides():
     guard = found["good", "when"]
     assert guard.n_stopped == 4
     assert (guard.n_changed, guard.differences[0].mean > 0.0) == (4, True)
+
+
+def test_a_pipeline_is_audited_by_its_name_or_file_too():
+    frames = list(loads(HANDED).frames())
+    Path("handed.yaml").write_text(HANDED)
+    for given in ("handed.yaml", Path("handed.yaml")):
+        assert by_name(audit(given, frames))["circle", "first_of"].n_stopped == 6
+    assert audit("discs", frames).n_frames == 10
+    with pytest.raises(UsageError, match="no pipeline named 'disc'; did you mean 'discs'"):
+        audit("disc", frames)
 
 
 def test_a_guard_against_an_empty_pad_prevents_failures_and_costs_no_answer():

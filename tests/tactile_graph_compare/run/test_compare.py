@@ -294,6 +294,27 @@ def test_images_and_arrays_are_frames_and_one_variant_may_stand_alone():
         compare(3)
 
 
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        ({"n_frames": -1}, "n_frames: must be a whole number >= 1, got -1"),
+        ({"n_frames": "3"}, "n_frames: must be a whole number >= 1, got '3'"),
+        ({"sweeps": {"footprint.level_v": []}}, "sweeps: footprint.level_v has no values"),
+        ({"sweeps": {"footprint.level_v": 3}}, "footprint.level_v must be a list of values, got 3"),
+        ({"sweeps": {"footprint.level_v": "2,3"}}, "must be a list of values, got '2,3'"),
+        ({"sweeps": {"footprint.level_v": [1, 1]}}, "level_v: a value stands there twice"),
+        ({"sweeps": ["a.b"]}, "sweeps must be a mapping"),
+        ({"sweeps": {"footprint.levl_v": [1]}}, "sweeps footprint.levl_v: none of the pipelines"),
+        ({"settings": "a=1"}, "settings must be a mapping"),
+        ({"settings": {"a.b": 1}}, "settings a.b: none of the pipelines has it"),
+        ({"reference": "disc"}, "reference disc: must be one of the variants"),
+    ],
+)
+def test_what_is_wrong_with_a_call_is_told_by_the_names_of_python(asked, told):
+    with pytest.raises(UsageError, match=told):
+        compare("discs", **asked)
+
+
 def test_frames_and_a_source_exclude_each_other():
     with pytest.raises(UsageError, match="give frames or a source, not both"):
         compare(["discs"], [], source="made")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import pytest
 
+from tactile_graph import load, loads
 from tactile_graph.errors import PipelineError, UsageError
 from tactile_graph.plugins.registry import installed
 from tactile_graph_compare.variants.one_source import first_source, on_source
@@ -158,6 +160,37 @@ def test_the_same_variant_twice_is_an_error_and_so_is_none():
         labels("circle-1", "circle-1")
     with pytest.raises(UsageError, match="name the pipelines"):
         labels()
+
+
+def test_what_was_set_in_a_pipeline_handed_in_is_told_as_if_it_were_typed():
+    circle = load("circle-3")
+    fine = circle.with_settings({"fine.factor": 4})
+    request = VariantRequest(fine, {"footprint.level_v": 0.05})
+    got = prepare([VariantRequest(p) for p in (circle, fine)] + [request], installed())
+    assert [(p.label, p.given) for p in got] == [
+        ("circle-3", "circle-3"),
+        ("circle-3 factor=4", "'circle-3 --set fine.factor=4'"),
+        (
+            "circle-3 factor=4 level_v=0.05",
+            "'circle-3 --set fine.factor=4 --set footprint.level_v=0.05'",
+        ),
+    ]
+    with pytest.raises(UsageError, match=r"named twice: circle-3 --set fine\.factor=4"):
+        prepare([VariantRequest(fine), VariantRequest(fine)], installed())
+
+
+def test_a_pipeline_handed_in_is_given_by_its_file_and_one_of_a_text_by_no_command(
+    tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    text = load("circle-3").text
+    Path("mine.yaml").write_text(text)
+    own = loads(text, file="mine.yaml").with_settings({"fine.factor": 3})
+    changed = loads(text + "\n", file="mine.yaml").with_settings({"fine.factor": 4})
+    functions = load("circle-1", steps={"half": lambda image: image})
+    got = prepare([VariantRequest(p) for p in (own, changed, functions)], installed())
+    assert [p.label for p in got] == ["circle-3 factor=3", "circle-3 factor=4", "circle-1"]
+    assert [p.given for p in got] == ["'mine.yaml --set fine.factor=3'", "", ""]
 
 
 def test_variants_take_the_frames_of_the_first_that_has_a_source():

@@ -110,6 +110,18 @@ def test_what_comes_after_an_empty_pad_is_looked_at_in_full():
         step(Image(np.zeros((2, 2)), valid=np.zeros((2, 2), bool)))
 
 
+@pytest.mark.parametrize("odd", [math.inf, -math.inf])
+def test_infinity_is_no_reading_that_noise_is_told_by(odd):
+    values = np.random.default_rng(0).normal(0.0, 1.0, (9, 9))
+    values[3:6, 3:6] += 200.0
+    values[4, 2] = odd
+    with pytest.raises(DataError, match=f"row 4, column 2: must be a number, got {odd}"):
+        Threshold(level="auto")(Image(values))
+    bad = np.zeros((9, 9), bool)
+    bad[4, 2] = True
+    assert Threshold(level="auto")(Image(values, valid=~bad)).count == 9
+
+
 @pytest.mark.parametrize("number", [0.5, 1.0, math.inf, math.nan, -math.inf])
 def test_any_at_least_plain_and_compiled(number):
     values = np.array([[0.0, 0.5], [number, 0.0]])

@@ -13,6 +13,7 @@ import pytest
 pytest.importorskip("starlette", reason="the live extra is not installed")
 
 from tactile_graph import Frame
+from tactile_graph.steps import Report
 from tactile_graph_live.server import recorder as recorders
 from tactile_graph_live.server.recorder import Recorder, free_name
 
@@ -56,7 +57,7 @@ def test_every_frame_is_kept_with_the_label_of_its_moment(tmp_path: Path) -> Non
     assert recorder.close() == 5
     assert (recorder.state.lost, recorder.state.label) == (2, "ball")
     source = load("circle-1").with_source("recording", path=str(recorder.path), quantity="counts")
-    read = list(source.frames())
+    read = list(source.frames(report=Report()))
     assert [f.label for f in read] == ["cup"] * 3 + ["ball"] * 2
     assert [f.image.values[0, 0] for f in read] == [0, 1, 2, 5, 6]
     assert failures == []
@@ -123,7 +124,7 @@ def test_the_frame_after_a_break_of_unknown_length_follows_a_gap(tmp_path: Path)
     assert recorder.close() == 4
     assert (recorder.n_breaks, recorder.state.lost) == (1, 0)
     source = load("circle-1").with_source("recording", path=str(recorder.path), quantity="counts")
-    assert [f.gap for f in source.frames()] == [False, False, True, False]
+    assert [f.gap for f in source.frames(report=Report())] == [False, False, True, False]
 
 
 def test_what_goes_wrong_is_told_and_closing_still_ends(tmp_path: Path) -> None:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactile_graph.errors import DataError, did_you_mean, one_of
+from tactile_graph_sources.readers.arrays.masks import Masks, of_frames
 from tactile_graph_sources.readers.arrays.stack import MOST_CHANNELS, one_of_channels, stack_of
 from tactile_graph_sources.readers.arrays.times import TEXTS, in_seconds
 from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
@@ -45,6 +47,8 @@ class Held(NamedTuple):
         Whether the frames of three axes are known to lie along the first.
     of_matlab : bool
         Whether MATLAB wrote it, where cells in a row mostly come column by column.
+    masks : mapping
+        Arrays that say of frames or their cells whether they are good, for `of_frames`.
     """
 
     values: NDArray[Any]
@@ -54,6 +58,7 @@ class Held(NamedTuple):
     times_name: str = ""
     known: bool = False
     of_matlab: bool = False
+    masks: Masks = MappingProxyType({})
 
 
 class Unread(NamedTuple):
@@ -93,6 +98,7 @@ def _timed(
             error.what += f" (and {BY_COLUMN})"
         raise
     _tell_order(reading, held, frames)
+    frames = of_frames(reading, held.what, frames, held.masks)
     times, said = held.times, held.said
     if times is not None and len(times) != len(frames):
         reading.assume(f"times left out ({len(times)}, for {len(frames)} frames)")

@@ -161,7 +161,7 @@ def held_in(reading: Reading, group: Group) -> Held:
     loaded = [group.load(numbers[n], p) for n, p in packed.items()]
     values = np.stack(loaded) if frames else loaded[0]
     if packed[name].said:
-        reading.assume(f"values unpacked, as the file says: {packed[name].said}")
+        reading.heed(f"values unpacked, as the file says: {packed[name].said}")
     times = None
     if time:
         how = group.packing(where, time, timed[time])

@@ -26,6 +26,7 @@ from tactile_graph_sources.readers.arrays.datasets import (
     numbered,
 )
 from tactile_graph_sources.readers.arrays.masks import (
+    Masks,
     masks_among,
     refuse_unclear,
     without_invalid,
@@ -271,20 +272,21 @@ def _checked(reading: Reading, arrays: Archive, name: str, axes: Axes = "asked")
 def _foreign(reading: Reading, arrays: Archive) -> Held:
     """Return the only stack of another's archive, its times beside it."""
     reading.refuse_settings(*OF_TIMES)
-    values, what, known = _only(reading, arrays)
     outlines = {name: arrays.outline(name) for name in arrays.names}
-    masks = {n: arrays.load(n) for n in masks_among(outlines) if n != reading.told.sensor}
-    values = without_invalid(reading, values, masks)
+    masks = masks_among(outlines, arrays.load)
+    values, what, known = _only(reading, arrays, masks)
+    masks.pop(reading.told.sensor, None)
+    values, of_frames = without_invalid(reading, values, masks)
     lines = {n: t.kind for n, (s, t) in outlines.items() if len(s) == 1}
     time = time_among(n for n, kind in lines.items() if kind in "iufMm")
     time = time or time_among(n for n, kind in lines.items() if kind in "US")
     small = [n for n, (s, t) in outlines.items() if math.prod(s) in (1, 2) and t.kind in "iufUS"]
     said = described_by({n: arrays.load(n) for n in small})
     times = arrays.load(time) if time else None
-    return Held(values, what, said, times, time, known)
+    return Held(values, what, said, times, time, known, masks=of_frames)
 
 
-def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str, bool]:
+def _only(reading: Reading, arrays: Archive, masks: Masks) -> tuple[NDArray[Any], str, bool]:
     """Return the only stack, what it is called, and whether numbers say that frames come first."""
     where, asked = str(reading.path), reading.told.sensor
     if asked:
@@ -294,12 +296,13 @@ def _only(reading: Reading, arrays: Archive) -> tuple[NDArray[Any], str, bool]:
         reading.sensors[asked] = None
         return _checked(reading, arrays, asked), f"array {asked!r}", False
     outlines = {name: arrays.outline(name) for name in arrays.names}
-    masks = masks_among(outlines)
     shapes_of = {n: s for n, (s, t) in outlines.items() if t.kind in "buif" and n not in masks}
     stacks = [n for n, s in shapes_of.items() if len(s) in (2, 3) or is_stack(s)]
     if len(stacks) == 1:
         take_all = f"or take all cells, such as sensor={stacks[0]}"
-        refuse_unclear(where, outlines, take_all)
+        refuse_unclear(
+            where, {n: m.shape for n, m in masks.items()}, shapes_of[stacks[0]], take_all
+        )
     if len(stacks) > 1 and (frames := numbered({n: shapes_of[n] for n in stacks})):
         arrays.check_sizes(frames)
         what = f"arrays {frames[0]!r} to {frames[-1]!r}"
@@ -383,7 +386,9 @@ def _ours(reading: Reading, arrays: Archive) -> _Ours:
     axes: Axes = "known" if "quantity" in arrays.names else "asked"
     if axes == "asked":
         outlines = {name: arrays.outline(name) for name in arrays.names}
-        refuse_unclear(arrays.where, outlines, "or leave it out to take all cells")
+        shapes = {n: s for n, (s, t) in outlines.items() if t.kind == "b"}
+        of = outlines["values"][0]
+        refuse_unclear(arrays.where, shapes, of, "or leave it out to take all cells")
     values = _checked(reading, arrays, "values", axes)
     values = stack_of(reading, values, "array 'values'", axes)
     n = len(values)

@@ -55,7 +55,7 @@ def upright(reading: Reading, picture: NDArray[Any], orientation: object) -> NDA
     """Return a picture, rows and columns first, as its orientation says it is to be seen; told."""
     if orientation not in range(2, 9):
         return picture
-    reading.assume("pictures turned upright, as they say of themselves")
+    reading.heed("pictures turned upright, as they say of themselves")
     if orientation in (5, 6, 7, 8):
         picture = np.swapaxes(picture, 0, 1)
     if orientation in (3, 4, 7, 8):

@@ -134,7 +134,7 @@ def _as_white_says(reading: Reading, where: str, page: Any, matrix: NDArray[Any]
     if matrix.dtype.kind == "b":
         reading.assume("1 bit a pixel taken as it is, though the TIFF says that 0 is white")
         return matrix
-    reading.assume("grey values turned round, as the TIFF says that 0 is white")
+    reading.heed("grey values turned round, as the TIFF says that 0 is white")
     if matrix.dtype.kind != "u":
         raise DataError(
             where,

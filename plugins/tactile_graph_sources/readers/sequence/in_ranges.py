@@ -138,6 +138,7 @@ class _InRanges(NamedTuple):
             raise Irregular(str(why)) from why
         report.count(f"recordings read as {self.format}")
         report.counts.update(self.said.counts)
+        report.assumed.update(self.said.assumed)
 
     def frames(
         self, low: int, high: int, place: int, in_stacks: bool

@@ -433,6 +433,17 @@ def test_each_runs_a_step_over_the_items_of_a_list() -> None:
     assert run(p)["e"] == (9, 10, 11)
 
 
+@pytest.mark.parametrize("odd", [float("nan"), [1.0, float("inf")], np.array([np.nan, 1.0])])
+def test_a_frame_whose_output_is_not_finite_is_not_ok(odd: Any) -> None:
+    def given(image: Image) -> Any:
+        return odd if image.values.any() else 1.0
+
+    text = "pipeline: p\nnodes: {n: {step: given, in: frame}}\noutputs: [n]"
+    pipeline = loads(text, steps={"given": given})
+    assert not pipeline.run(np.ones((2, 2))).ok
+    assert pipeline.run(np.zeros((2, 2))).ok
+
+
 def test_an_item_that_fails_keeps_its_place_and_is_named() -> None:
     p = make(
         f"{V}\nm: {{step: many, in: v}}\ne: {{step: picky, in: m, each: true, with: {{bad: 2}}}}",

@@ -14,7 +14,7 @@ from tactile_graph import Circle, Degenerate, Frame, Image, load, loads
 from tactile_graph.api.result import Result
 from tactile_graph.api.results import Results
 from tactile_graph.engine.tables.table import ObjectTable, make_table, units_of
-from tactile_graph.errors import UsageError
+from tactile_graph.errors import FrameError, UsageError
 from tactile_graph.vocabulary import words_and_unit
 from tactile_graph.wires import TrueObject
 from tactile_graph.wires.frame_stack import FrameStack
@@ -265,3 +265,18 @@ def test_without_pandas_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(UsageError, match=r"to_pandas needs pandas: pip install pandas"):
         load("contacts").stream([np.ones((4, 4))]).to_pandas()
+
+
+@pytest.mark.slow
+def test_a_table_that_a_bad_frame_ends_says_how_many_came_before() -> None:
+    pytest.importorskip("pandas")
+    pipeline = loads("pipeline: p\nnodes: {n: {step: peak, in: frame}}\noutputs: [n]",
+                     steps={"peak": _peak})  # fmt: skip
+    with pytest.raises(FrameError, match="frame 3: a frame takes real numbers") as error:
+        pipeline.stream([*np.ones((3, 2, 2)), np.full((2, 2), "x")]).to_pandas()
+    (note,) = error.value.__notes__
+    assert note.startswith("3 frames came before that, and their rows are lost")
+
+
+def _peak(image: Image) -> float:
+    return float(image.peak)
