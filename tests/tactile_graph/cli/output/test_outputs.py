@@ -13,7 +13,9 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import FileIO
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -216,6 +218,27 @@ def test_an_older_output_stays_whole_until_the_next_is(tmp_path: Path) -> None:
     assert (tmp_path / "out.csv").read_text() == "newer\n"
     assert (tmp_path / "out.csv").stat().st_mode & 0o777 == 0o640
     assert not (tmp_path / "out.unfinished.csv").exists()
+
+
+def test_a_line_that_is_interrupted_is_not_in_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Interrupted(FileIO):
+        def write(self, data: Any) -> int:
+            if data[:1] == b"n":
+                super().write(data[:2])
+                raise KeyboardInterrupt
+            return super().write(data)
+
+    monkeypatch.setattr(
+        "tactile_graph.cli.output.writers.opened_alone", lambda name: Interrupted(name, "w")
+    )
+    writer = LineFile("out.csv", JsonLines())
+    writer._put(writer.open(), "first\n")
+    with pytest.raises(KeyboardInterrupt):
+        writer._put(writer.open(), "next\n")
+    writer.close()
+    assert (tmp_path / "out.csv").read_text() == "first\n"
 
 
 def test_an_older_output_that_cannot_be_replaced_is_written_into(
