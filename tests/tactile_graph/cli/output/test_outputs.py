@@ -339,10 +339,12 @@ def test_a_folder_that_may_not_be_written_is_refused_before_the_work(
 
 def test_a_name_that_leaves_no_room_for_the_note_is_refused_before_the_work(tmp_path: Path) -> None:
     fits = f"{'o' * 228}.unfinished.jsonl"
-    for name in (fits, f"o{fits}"):
+    assert call("run", "discs", "-o", fits).exit_code == 0
+    for name in (f"o{fits}", f"{'o' * 250}.jsonl"):  # the latter leaves no room for itself
         got = call("run", "discs", "-o", name)
-    assert got.exit_code == 2
-    assert got.stderr.startswith(f"error: -o o{fits}: the name is too long: of o{fits}.meta.json,")
+        assert got.exit_code == 2
+        told = f"error: -o {name}: the name is too long: of {name}.meta.json,"
+        assert got.stderr.startswith(told)
     assert {p.name for p in tmp_path.iterdir() if "oo" in p.name} == {fits, f"{fits}.meta.json"}
     got = call("run", "discs", "-o", fits)  # whose older one would stay, and the new one beside it
     assert f"of {'o' * 228}.unfinished.unfinished.jsonl.meta.json, beside it" in got.stderr
