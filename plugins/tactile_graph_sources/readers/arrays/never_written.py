@@ -30,15 +30,15 @@ class NeverWritten(NamedTuple):
         chunks = f"{self.n_chunks} of {self.n_all} chunks of dataset {name!r} never written"
         if self.n_all == 1:
             chunks = f"dataset {name!r} never written"
-        text = f"{chunks}, whose cells are taken for missing"
+        text = f"{chunks}, whose values are taken for missing"
         n_whole = int(np.count_nonzero(self.cells.reshape(len(self.cells), -1).all(axis=1)))
         return f"{text} (all of {n_whole} of the {len(self.cells)} along its first axis)"
 
     def left_out_of(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Return values with NaN where nobody wrote any."""
-        kind = values.dtype if values.dtype.kind == "f" else np.float64
-        found = values.astype(kind)
-        found[self.cells] = np.nan
+        """Return values with NaN where nobody wrote any, dates with NaT."""
+        dated = values.dtype.kind in "mM"
+        found = values.astype(values.dtype if dated or values.dtype.kind == "f" else np.float64)
+        found[self.cells] = "NaT" if dated else np.nan
         return found
 
 

@@ -275,7 +275,7 @@ def test_frames_that_nobody_wrote_are_missing_not_zeros(tmp_path: Path, dtype: s
     np.testing.assert_array_equal([f.image.values for f in frames[:6]], values[:6])
     assert [f.image.valid is None for f in frames] == 6 * [True] + 6 * [False]
     assert not any(f.image.valid.any() for f in frames[6:] if f.image.valid is not None)
-    told = "6 of 12 chunks of dataset 'p' never written, whose cells are taken for missing"
+    told = "6 of 12 chunks of dataset 'p' never written, whose values are taken for missing"
     whole = "(all of 6 of the 12 along its first axis)"
     assert report.counts[f"recordings with {told} {whole}"] == 1
 
@@ -297,6 +297,22 @@ def test_a_dataset_of_which_nothing_was_written_holds_no_value(tmp_path: Path) -
     frames, report = frames_of(path)
     assert not any(f.image.valid is None or f.image.valid.any() for f in frames)
     assert any("dataset 'p' never written" in told for told in report.counts)
+
+
+@pytest.mark.parametrize("dated", [False, True])
+def test_times_that_nobody_wrote_are_none(tmp_path: Path, dated: bool) -> None:
+    def fill(file: Any) -> None:
+        times = np.arange(12.0) + 1.0
+        if dated:
+            days = np.datetime64("2024-01-01", "s") + np.arange(12).astype("m8[s]")
+            times = days.astype(h5py.opaque_dtype(days.dtype))
+        dataset = file.create_dataset("time", (12,), times.dtype, chunks=(1,))
+        for k in range(6):
+            dataset[k] = times[k]
+
+    frames, _ = frames_of(made(tmp_path / "a.h5", with_stack, fill))
+    assert [f.time_s is None for f in frames] == 6 * [False] + 6 * [True]
+    assert np.diff([f.time_s or 0.0 for f in frames[:6]]) == pytest.approx(1.0)
 
 
 def in_one_chunk_that_is_longer(file: Any) -> None:
