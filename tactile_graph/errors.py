@@ -125,11 +125,25 @@ def did_you_mean(got: str, allowed: Iterable[str]) -> str:
 
 
 def text_of(error: BaseException) -> str:
-    """Return an error's text; empty if a plugin's error cannot tell it."""
+    """Return an error's text, with the file of damaged bytecode; empty if it cannot tell it."""
     try:
-        return str(error)
+        text = str(error)
     except Exception:
         return ""
+    damaged = _bytecode(error) if "marshal data" in text else ""
+    if not damaged:
+        return text
+    return f"{text}: {damaged} is damaged; delete its folder, which Python makes anew"
+
+
+def _bytecode(error: BaseException) -> str:
+    """Return the file of compiled code that an import could not take; "" for other errors."""
+    from traceback import walk_tb
+
+    for frame, _ in walk_tb(error.__traceback__):
+        if frame.f_code.co_name == "_compile_bytecode":  # of the import system
+            return str(frame.f_locals.get("bytecode_path") or "")
+    return ""
 
 
 def without(module: str, error: ImportError, missing: str) -> str:

@@ -52,7 +52,11 @@ def whole_file(name: Name, by: str = "") -> Iterator[BinaryIO]:
     with said(name):
         if not is_plain(name):
             with Path(name).open("wb") as file:
-                yield file
+                try:
+                    yield file
+                except KeyboardInterrupt:
+                    file.raw.close()  # what is left would wait for a reader, who may never come
+                    raise
             return
         target = Path(os.path.realpath(name))
         part = target.with_name(f".{target.name}.{by}.part") if by else part_of(target)

@@ -6,7 +6,9 @@ import _thread
 import signal
 import sys
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import FrameType, TracebackType
 from typing import Any, ClassVar
 
@@ -18,6 +20,8 @@ ENDS = tuple(
 """What comes at a shutdown, from a batch system, from a terminal that is closed."""
 AGAIN_S = 0.02
 """Until what a callback has swallowed comes again."""
+PATIENCE_S = 0.5
+"""For which what is being written may go on after a signal, before the next one ends it."""
 
 
 class Ended(KeyboardInterrupt):
@@ -49,8 +53,10 @@ def words_of(error: BaseException) -> str:
 class Interrupts:
     """While entered, Ctrl-C raises KeyboardInterrupt, but not inside ``with interrupts.held:``.
 
-    There it waits for the end of the block, so that what is being written is written whole. The
-    signals that end programs raise `Ended` likewise. One that is ignored (nohup) stays so. What is
+    There it waits for the end of the block, so that what is being written is written whole; one
+    that comes `PATIENCE_S` after it waits no more, for a block may never end. Where somebody else
+    is waited for (`reader_awaited`), the first one comes again by itself then. The signals that end
+    programs raise `Ended` likewise. One that is ignored (nohup) stays so. What is
     raised where Python lets no error out, as in a callback that a library's machine code calls, or
     in a ``__del__``, comes again right after.
 
@@ -114,9 +120,7 @@ class Interrupts:
             self.heeded = error
             return
         Interrupts.latest = error
-        if self.held.depth:
-            self.held.waiting = error
-        else:
+        if not self.held.keeps(error, number):
             raise error
 
 
@@ -128,10 +132,46 @@ def _send(number: int) -> None:
         _thread.interrupt_main(signal.Signals(number))
 
 
+@contextmanager
+def reader_awaited() -> Iterator[None]:
+    """Tell that what is done in the block hangs on who reads a pipe, who may never do so."""
+    _Held.n_awaited += 1
+    try:
+        yield
+    finally:
+        _Held.n_awaited -= 1
+
+
 class _Held:
+    n_awaited: ClassVar[int] = 0
+    """How many blocks wait for a reader."""
+
     def __init__(self) -> None:
         self.depth = 0
         self.waiting: KeyboardInterrupt | None = None
+        self._since_s = 0.0
+
+    def keeps(self, error: KeyboardInterrupt, number: int) -> bool:
+        """Return whether what a signal raises waits for the end of the block."""
+        if not self.depth:
+            return False
+        if self.waiting is not None:
+            return time.monotonic() - self._since_s < PATIENCE_S
+        self.waiting, self._since_s = error, time.monotonic()
+        self._again_later(error, number)
+        return True
+
+    def _again_later(self, error: KeyboardInterrupt, number: int) -> None:
+        again = threading.Timer(PATIENCE_S, self._again, (error, number))
+        again.daemon = True
+        again.start()
+
+    def _again(self, error: KeyboardInterrupt, number: int) -> None:
+        if self.waiting is not error:
+            return
+        if self.n_awaited:
+            _send(number)
+        self._again_later(error, number)
 
     def __enter__(self) -> None:
         self.depth += 1

@@ -169,8 +169,8 @@ class _Declarer:
             return self.result
         self.keys(data, TOP_KEYS, (), "pipeline file")
         self.result.name = self.text(data, "pipeline", what="'pipeline'")
-        if not self.result.name:
-            self.problem("'pipeline' is missing: every file names its pipeline")
+        if data.get("pipeline") in (None, ""):
+            self.problem("'pipeline' is missing: every file names its pipeline", "pipeline")
         self.result.about = self.text(data, "about", what="'about'")
         self.result.evolves = self.text(data, "evolves", what="'evolves'")
         self.source(data.get("source"))
@@ -205,7 +205,7 @@ class _Declarer:
             return
         self.keys(data, SOURCE_KEYS, ("source",), "source")
         step = self.text(data, "step", "source", what="source, 'step'")
-        if not step:
+        if data.get("step") in (None, "") and not self.document.has_unread("source", "step"):
             self.problem("source: 'step' is missing", "source")
         self.result.source_step = step or None
         self.result.source_settings = self.mapping(data.get("with"), ("source", "with"), "source")
@@ -255,7 +255,7 @@ class _Declarer:
         if not isinstance(data, dict) or not data:
             what = "is missing: it maps a name to each node" if data is None else (
                 f"must be a mapping of nodes, got {kind_of(data)}")  # fmt: skip
-            self.problem(f"'nodes' {what}", *(() if data is None else ("nodes",)))
+            self.problem(f"'nodes' {what}", "nodes")
             return
         if len(data) > MOST_NODES:
             self.problem(f"{len(data)} nodes; allowed are {MOST_NODES}", "nodes")
@@ -286,7 +286,8 @@ class _Declarer:
         node.step = self.text(body, "step", *path, what=f"{what}, 'step'") or None
         node.use = self.text(body, "use", *path, what=f"{what}, 'use'") or None
         for key in [k for k in ("step", "use", "when") if body.get(k, "x") in (None, "")]:
-            self.problem(f"{what}: {key!r} is empty", *path, key, key=True)
+            if not self.document.has_unread(*path, key):
+                self.problem(f"{what}: {key!r} is empty", *path, key, key=True)
         self.text(body, "about", *path, what=f"{what}, 'about'")
         if "first_of" in body:
             node.first_of = self.refs(body["first_of"], (*path, "first_of"), f"{what}, 'first_of'")

@@ -53,6 +53,7 @@ class Document:
     _values: dict[Path, Mark] = field(default_factory=dict)
     _switches: dict[Path, str] = field(default_factory=dict)
     _joined: set[Path] = field(default_factory=set)
+    _unread: set[Path] = field(default_factory=set)
 
     def spelled(self, *path: str | int) -> str:
         """Return how a yes/no is written: a condition may be called ``on``, a yes to YAML.
@@ -80,8 +81,18 @@ class Document:
         return self._values.get((), Mark(self.file, 1, 1))
 
     def problem(self, message: str, *path: str | int, key: bool = False) -> None:
-        """Note a problem at ``path``."""
-        self.problem_at(self.mark(*path, key=key), message)
+        """Note a problem at ``path``; none of a value that could not be read, which is told."""
+        if key or path not in self._unread:
+            self.problem_at(self.mark(*path, key=key), message)
+
+    def unread(self, mark: Mark, message: str, path: Path) -> None:
+        """Note that the value at ``path`` cannot be read, and why."""
+        self._unread.add(path)
+        self.problem_at(mark, message)
+
+    def has_unread(self, *path: str | int) -> bool:
+        """Return whether a value at or in ``path`` could not be read."""
+        return any(place[: len(path)] == path for place in self._unread)
 
     def problem_at(self, mark: Mark | None, message: str) -> None:
         """Note a problem at ``mark``, or nowhere in the file.
@@ -318,13 +329,13 @@ class _Reader:
         if isinstance(node, yaml.SequenceNode) and node.tag == "tag:yaml.org,2002:seq":
             return [self.read(child, (*path, i)) for i, child in enumerate(node.value)]
         if isinstance(node, yaml.ScalarNode) and node.tag in _SCALARS:
-            value = self._scalar(node)
+            value = self._scalar(node, path)
             if isinstance(value, bool):
                 self.document._switches[path] = str(node.value)
             elif self._has_lines_joined(node):
                 self.document._joined.add(path)
             return value
-        self.document.problem_at(self._mark(node), _refused(node.tag))
+        self.document.unread(self._mark(node), _refused(node.tag), path)
         return None
 
     def _has_lines_joined(self, node: yaml.ScalarNode) -> bool:
@@ -336,19 +347,19 @@ class _Reader:
             del lines[0]
         return sum(not line.isspace() for line in lines if line) > 1
 
-    def _scalar(self, node: yaml.ScalarNode) -> Any:
+    def _scalar(self, node: yaml.ScalarNode, path: Path) -> Any:
         if node.tag == "tag:yaml.org,2002:timestamp":
             return node.value
         if node.tag != "tag:yaml.org,2002:str" and len(node.value) > LONGEST_NUMBER:
             text = f"a number of {len(node.value)} characters; allowed are {LONGEST_NUMBER}"
-            self.document.problem_at(self._mark(node), text)
+            self.document.unread(self._mark(node), text, path)
             return None
         try:
             return self.constructor.construct_object(node, deep=True)
         except (ValueError, LookupError, yaml.YAMLError):
             # A tag can call any word a number: PyYAML then stumbles in several ways.
             kind = node.tag.rpartition(":")[2]
-            self.document.problem_at(self._mark(node), f"{shown(node.value)} is no {kind}")
+            self.document.unread(self._mark(node), f"{shown(node.value)} is no {kind}", path)
             return None
 
     def _mapping(self, node: yaml.MappingNode, path: Path) -> dict[str, Any]:

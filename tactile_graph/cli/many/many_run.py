@@ -173,7 +173,7 @@ class ManyRun:
         output = self.asked.output
         try:
             if self.unfinished is None:
-                self._join(self._parts(held), None)
+                self._join(self._parts(held), output.name)
                 return
             for _ in self._parts(held):
                 pass
@@ -291,15 +291,15 @@ class ManyRun:
         self.report.count("frames left out, of which workers died")
         self.report.trouble(f"frame {place}", KILLER)
 
-    def _join(self, parts: Iterator[bytes], name: str | None) -> None:
+    def _join(self, parts: Iterator[bytes], name: str) -> None:
         joined = self.asked.output.exporter.joined
         assert joined is not None  # or the frames would not have been divided
-        if name is None:
+        if name == "-":
             joined(parts, sys.stdout.buffer)
             return
         with whole_file(name, by="joined") as file:  # one run at a time: it holds the journal
             joined(parts, file)
-            self.n_bytes = file.tell()
+            self.n_bytes = file.tell() if file.seekable() else 0
 
     # -- the end -------------------------------------------------------------------------------
 

@@ -11,6 +11,7 @@ import os
 from io import FileIO
 from pathlib import Path
 
+from tactile_graph.cli.interrupt import reader_awaited
 from tactile_graph.errors import UsageError
 from tactile_graph.files import is_plain, said
 from tactile_graph.locks import is_locked, locked
@@ -38,7 +39,7 @@ def opened_alone(output: str) -> FileIO:
         If another run is writing it, or it cannot be written.
     """
     if not is_plain(output):
-        with said(output):
+        with said(output), reader_awaited():
             return FileIO(output, "w")
     file = held_alone(output)
     with said(output):

@@ -75,16 +75,21 @@ class Output:
 
     def check(self) -> None:
         """Refuse what could not be written in the end, before the work."""
+        self._check_length(self.name)  # nobody can look for a file of a name that is longer
         with self._named("check"):
             self.exporter.check(self.name)
         if self.name != "-" and is_plain(self.name):
             from tactile_graph.cli.output.older import unfinished_by
-            from tactile_graph.provenance import sidecar
 
-            note = sidecar(unfinished_by(self.name) or self.name).name
-            if len(os.fsencode(note)) > LONGEST_NAME:
-                told = f"the name is too long: of {note}, beside it, file systems take no more than"
-                raise UsageError(f"-o {self.name}: {told} {LONGEST_NAME} bytes")
+            self._check_length(unfinished_by(self.name) or self.name)
+
+    def _check_length(self, name: str) -> None:
+        from tactile_graph.provenance import sidecar
+
+        note = sidecar(name).name
+        if name != "-" and is_plain(name) and len(os.fsencode(note)) > LONGEST_NAME:
+            told = f"the name is too long: of {note}, beside it, file systems take no more than"
+            raise UsageError(f"-o {self.name}: {told} {LONGEST_NAME} bytes")
 
     def writer(self, pipeline: Pipeline, asked: tuple[str, ...]) -> tuple[Writer, Table | None]:
         """Return who writes it, and the table it is, if it is one."""

@@ -8,11 +8,12 @@ import os
 import stat
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any, BinaryIO, NoReturn, Protocol
 
 from tactile_graph.api.result import Result
+from tactile_graph.cli.interrupt import reader_awaited
 from tactile_graph.cli.output.column_texts import csv_lines, number_texts
 from tactile_graph.cli.output.older import stays, unfinished_by
 from tactile_graph.cli.output.one_run import held_alone, opened_alone
@@ -203,6 +204,13 @@ def _stdout_for_itself() -> tuple[BinaryIO, bool]:
         return sys.stdout.buffer, False
 
 
+def _is_regular(file: BinaryIO) -> bool:
+    try:
+        return stat.S_ISREG(os.fstat(file.fileno()).st_mode)
+    except (OSError, ValueError, AttributeError):  # stdout is no file, as in tests
+        return False
+
+
 class LineFile:
     """A file, or stdout, that takes whole lines; made when the first one comes.
 
@@ -233,6 +241,8 @@ class LineFile:
         self.broken = False
         """Whether a line could not be written."""
         self._file: BinaryIO | None = None
+        self._waits = False
+        """Whether it is no plain file: what is written waits for who reads it."""
         self._n_lines = 0
         self._n_bytes = 0
 
@@ -268,7 +278,12 @@ class LineFile:
             If another run is writing it, or it cannot be written.
         """
         if self._file is None:
-            self._file = self._stdout or self._opened()
+            try:
+                self._file = self._stdout or self._opened()
+            except KeyboardInterrupt:
+                self.broken = not is_plain(self.output)  # nobody may ever read that pipe
+                raise
+            self._waits = not _is_regular(self._file)
             self._put(self._file, self.lines.head())
         return self._file
 
@@ -312,14 +327,27 @@ class LineFile:
         data = memoryview(text.encode())
         size = len(data)
         try:
-            while data:
-                data = data[file.write(data) :]
-            file.flush()
+            with reader_awaited() if self._waits else nullcontext():
+                while data:
+                    data = data[file.write(data) :]
+                file.flush()
         except BrokenPipeError:
+            raise
+        except KeyboardInterrupt:
+            self._leave_off(file)
             raise
         except OSError as error:
             self._give_up(file, error)
         self._n_bytes += size
+
+    def _leave_off(self, file: BinaryIO) -> None:
+        """Leave whole lines of a file, and a pipe as it is: nobody may take the rest of a line."""
+        if not self._waits:
+            os.ftruncate(file.fileno(), self._n_bytes)
+            return
+        self.broken = True
+        if self._is_closed:
+            getattr(file, "raw", file).close()  # or what is left would be written now
 
     def _give_up(self, file: BinaryIO, error: OSError) -> NoReturn:
         self.broken = True

@@ -118,9 +118,10 @@ def _source(scope: Scope, replaced: SourceOverride) -> Source | None:
         return None
 
     def tell(message: str, *path: str | int) -> None:
-        # Where another source was put in, the file says nothing of it.
-        at = scope.document.mark(*path) if replaced is None else None
-        scope.document.problem_at(at, message)
+        if replaced is None:
+            scope.document.problem(message, *path)
+        else:  # the file says nothing of it
+            scope.document.problem_at(None, message)
 
     try:
         signature = scope.registry.step(step, scope.place)
@@ -225,7 +226,8 @@ def _step(scope: Scope, declared: NodeDeclaration, guard: Guard | None) -> None:
     )  # fmt: skip
     given = scope.given(declared)
     _rules(scope, declared, *step_troubles(node, given, scope.facts, scope.frames))
-    if len(scope.document.problems) == before and signature.kind is Kind.CLASS:
+    whole = len(scope.document.problems) == before and not scope.document.has_unread(*declared.path)
+    if whole and signature.kind is Kind.CLASS:
         node = _made(scope, declared, node)
     scope.add(node)
 

@@ -11,7 +11,8 @@ from contextlib import suppress
 
 import pytest
 
-from tactile_graph.cli.interrupt import ENDS, Ended, Interrupts, code_of, words_of
+from tactile_graph.cli import interrupt
+from tactile_graph.cli.interrupt import ENDS, Ended, Interrupts, code_of, reader_awaited, words_of
 
 
 def test_outside_of_what_is_held_it_comes_at_once():
@@ -47,6 +48,32 @@ def test_inside_it_waits_for_the_end():
     with pytest.raises(KeyboardInterrupt):
         write_a_line(done)
     assert done == ["whole line"]
+
+
+def stay_inside(*after_s: float) -> None:
+    """Raise Ctrl-C at once, and after as many seconds, in a block that then waits."""
+    with Interrupts() as interrupts, interrupts.held:
+        signal.raise_signal(signal.SIGINT)
+        for pause_s in after_s:
+            time.sleep(pause_s)
+            signal.raise_signal(signal.SIGINT)
+        time.sleep(SLEEP_S)
+
+
+def test_a_second_one_gets_through_to_a_block_that_does_not_end(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(interrupt, "PATIENCE_S", 0.05)
+    begun_s = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        stay_inside(0.0, 0.06)
+    assert 0.05 < time.monotonic() - begun_s < SLEEP_S
+
+
+def test_one_gets_through_to_where_a_reader_is_awaited(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(interrupt, "PATIENCE_S", 0.05)
+    begun_s = time.monotonic()
+    with pytest.raises(KeyboardInterrupt), reader_awaited():
+        stay_inside()
+    assert 0.05 < time.monotonic() - begun_s < SLEEP_S
 
 
 def test_what_ends_by_itself_is_asked_once_before_it_is_made_to():

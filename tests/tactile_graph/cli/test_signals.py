@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import select
 import signal
 import subprocess
 import sys
@@ -40,6 +41,30 @@ def test_a_run_that_a_signal_ends_leaves_whole_lines_and_says_so(tmp_path: Path,
     assert lines[-1].endswith("\n")
     assert f"ended by {name}: {len(lines)} frames".encode() in said
     assert json.loads(Path(f"{out}.meta.json").read_text())["complete"] is False
+
+
+@pytest.mark.slow
+@posix
+@pytest.mark.parametrize("workers", [(), ("--workers", "2")], ids=["one process", "workers"])
+@pytest.mark.parametrize("n_read", [None, 0, 100], ids=["nobody", "not yet", "not to the end"])
+def test_a_signal_ends_a_run_whose_pipe_nobody_reads(
+    tmp_path: Path, n_read: int | None, workers: tuple[str, ...]
+) -> None:
+    pipe = tmp_path / "pipe.jsonl"
+    os.mkfifo(pipe)
+    reader = None if n_read is None else os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    running = process("run", *ENDLESS, "-o", str(pipe), *workers)
+    if reader is not None:
+        while not select.select([reader], [], [], 60)[0]:
+            pass
+        os.read(reader, n_read or 0)
+    time.sleep(2.0)  # the pipe is full then
+    running.send_signal(signal.SIGTERM)
+    _, said = running.communicate(timeout=60)
+    assert running.returncode == 128 + signal.SIGTERM, said
+    assert b"ended by SIGTERM" in said
+    if reader is not None:
+        os.close(reader)
 
 
 @pytest.mark.slow

@@ -501,6 +501,28 @@ def test_a_wrong_file_is_told_with_its_place(text: str, message: str, reg: Any) 
     assert all(str(p).startswith("p.yaml:") for p in caught.value.problems)
 
 
+@pytest.mark.parametrize("value", ["!!int x", "!!float ''", "!mine 3"])
+@pytest.mark.parametrize("text", [
+    "pipeline: {}\nnodes: {{a: {{step: load, in: frame}}}}",
+    "pipeline: p\nnodes: {}",
+    "pipeline: p\nnodes: {{a: {{step: {}, in: frame}}}}",
+    "pipeline: p\nnodes: {{a: {{step: threshold, in: frame, with: {{level_v: {}}}}}}}",
+    "pipeline: p\nsource: {{step: {}}}\nnodes: {{a: {{step: load, in: frame}}}}",
+    "pipeline: p\nsource: {{step: recording, with: {{path: {}}}}}\n"
+    "nodes: {{a: {{step: load, in: frame}}}}",
+], ids=["name", "nodes", "step", "setting", "source", "setting of a source"])  # fmt: skip
+def test_a_value_that_cannot_be_read_is_one_mistake(text: str, value: str) -> None:
+    with pytest.raises(PipelineError) as caught:
+        loads(f"{text.format(value)}\noutputs: [a]", "p.yaml")
+    assert len(caught.value.problems) == 1
+
+
+def test_a_name_that_is_no_text_is_not_missing_as_well(reg: Any) -> None:
+    with pytest.raises(PipelineError) as caught:
+        loads("pipeline: no", "p.yaml", reg)
+    assert not any("'pipeline' is missing" in str(p) for p in caught.value.problems)
+
+
 def test_all_mistakes_are_told_in_one_run_in_the_order_of_the_file(reg: Any) -> None:
     text = """
 pipeline: p

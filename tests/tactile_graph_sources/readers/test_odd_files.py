@@ -85,6 +85,15 @@ def test_arrays_that_cannot_be_read_say_why(tmp_path: Path) -> None:
         "its array cannot be read: it holds Python objects, not numbers; save frames of one shape, "
         "in Python: numpy.save('out.npy', numpy.stack(frames))"
     )
+    for shape, told in (
+        ("(2, 8, 8)" + 12_000 * " ", "its header has 120"),
+        ("(-1, 16, 16)", "it is damaged: its header says a shape that no array has"),
+    ):
+        head = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}\n".encode()
+        size = len(head).to_bytes(2, "little")
+        path.write_bytes(b"\x93NUMPY\x01\x00" + size + head + bytes(4096))
+        assert refused(path).startswith(f"its array cannot be read: {told}")
+        assert "pickle" not in refused(path)
     np.save(path, np.zeros((0, 4, 4)))
     assert refused(path) == "its array has shape (0, 4, 4): it holds no cell"
 

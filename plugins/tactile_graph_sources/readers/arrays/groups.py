@@ -55,7 +55,7 @@ class Group(NamedTuple):
     check : callable
         Refuses arrays, by name, that are too large to be read.
     load : callable
-        Returns the values of the stack, from its array and how it is packed.
+        Returns the values of the stack, or of its times, from the array and how it is packed.
     texts : callable
         Returns the texts in what is not read, by its name; none where it holds something else.
         Refuses what is too large, as ``check`` does.
@@ -165,7 +165,7 @@ def held_in(reading: Reading, group: Group) -> Held:
     times = None
     if time:
         how = group.packing(where, time, timed[time])
-        times = how.unpacked(timed[time][()].ravel())
+        times = np.asarray(group.load(timed[time], how)).ravel()
         time = _with_unit(time, attributes_of(timed[time]).get("units"))
     else:
         times, time = _worded_times(reading, group)

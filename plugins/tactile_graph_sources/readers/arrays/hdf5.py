@@ -24,6 +24,8 @@ from tactile_graph_sources.readers.arrays.groups import (
     unread,
 )
 from tactile_graph_sources.readers.arrays.matlab import of_matlab
+from tactile_graph_sources.readers.arrays.never_written import never_written
+from tactile_graph_sources.readers.arrays.packing import Packing
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import OF_TIMES, Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
@@ -98,15 +100,25 @@ def _held(reading: Reading, h5py: ModuleType) -> Held:
             def texts(name: str) -> list[str]:
                 return _texts(h5py, name, file[name]) if others[name].what == TEXT else []
 
+            load = partial(_loaded, reading)
             group = Group(
-                "dataset", sets, others, file, check, lambda d, how: how.unpacked(d[()]),
-                texts, packing, frozenset(cells),
-            )  # fmt: skip
+                "dataset", sets, others, file, check, load, texts, packing, frozenset(cells)
+            )
             return held_in(reading, group)
     except DataError:
         raise
     except Exception as error:  # HDF5 has a dozen kinds of errors over damaged files
         raise DataError(where, f"the HDF5 file cannot be read: {str(error)[:120]}") from error
+
+
+def _loaded(reading: Reading, dataset: Any, packing: Packing) -> NDArray[Any]:
+    """Return the values of a dataset; NaN where nobody wrote any, which is told."""
+    values: NDArray[Any] = packing.unpacked(dataset[()])
+    left = None if isinstance(dataset, _Cells) else never_written(dataset)
+    if left is None:
+        return values
+    reading.assume(left.told(dataset.name.lstrip("/")))
+    return left.left_out_of(values)
 
 
 class _Cells:

@@ -30,6 +30,14 @@ def _words(error: Exception) -> str:
             "it holds Python objects, not numbers; save frames of one shape, in Python: "
             "numpy.save('out.npy', numpy.stack(frames))"
         )
+    if "max_header_size" in text:
+        n = text.partition("(")[2].partition(")")[0]
+        return (
+            f"its header has {n} letters, of which a matrix needs a hundred: it is damaged, or has "
+            "very many fields; save the one with the cells alone"
+        )
+    if "must be positive" in text:
+        return "it is damaged: its header says a shape that no array has"
     return text
 
 

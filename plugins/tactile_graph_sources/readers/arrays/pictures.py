@@ -6,6 +6,7 @@ import hashlib
 import io
 import logging
 import os
+import re
 import warnings
 import zipfile
 from collections.abc import Iterable, Iterator
@@ -36,6 +37,7 @@ _BMP_HEAD = 14
 """Bytes, of which four are always 0."""
 MOST_BYTES = 1 << 28
 MOST_UNPACKED = 1 << 26
+_IN_MEMORY = re.compile(r"\s*<[^<>]* at 0x[0-9a-fA-F]+>")
 
 
 def recognises(head: Head) -> bool:
@@ -151,10 +153,15 @@ def _pages(reading: Reading, content: bytes, name: str) -> Iterator[NDArray[Any]
             raise
         except Exception as error:  # every library below imageio has errors of its own
             if not n:
-                text = str(error).partition("\n")[0].partition("<")[0].rstrip()[:120]
-                raise DataError(where, f"the picture cannot be read: {text}") from error
+                raise DataError(where, f"the picture cannot be read: {_why(error)}") from error
             what = "cannot be read; the pages before it are kept"
             reading.damaged(f"page {n}", what, n_frames=0)  # nobody knows how many come after it
+
+
+def _why(error: Exception) -> str:
+    """Return the first line of an error without where in the memory what it names lies."""
+    line = _IN_MEMORY.sub("", str(error).partition("\n")[0])
+    return line.replace("<", "").replace(">", "").strip()[:120] or type(error).__name__
 
 
 def _plugin(content: bytes) -> str:

@@ -29,6 +29,7 @@ from tactile_graph_sources.readers.arrays.groups import (
     packing,
     unread,
 )
+from tactile_graph_sources.readers.arrays.never_written import said_of_gone
 from tactile_graph_sources.readers.arrays.packing import Packing, packing_of
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import OF_TIMES, Reading
@@ -117,7 +118,8 @@ def _held(reading: Reading, zarr: Any) -> Held:
         found = np.ravel(whole[name][()]).tolist()
         return [t.decode("utf-8", "replace") if isinstance(t, bytes) else str(t) for t in found]
 
-    group = Group("array", arrays, others, whole, check, _loaded, texts, _packing)
+    load = partial(_loaded, reading)
+    group = Group("array", arrays, others, whole, check, load, texts, _packing)
     return held_in(reading, group)
 
 
@@ -229,7 +231,9 @@ class _OnDisk:
         return read[(slice(low - self._start, high - self._start), *rest)]
 
 
-def _loaded(array: Any, packing: Packing) -> Any:
+def _loaded(reading: Reading, array: Any, packing: Packing) -> Any:
+    if told := said_of_gone(array.basename or _bare_name(reading.path), array, _pieces(array)):
+        reading.assume(told)
     if array.ndim == 3:
         return _OnDisk(array, packing)
     return packing.unpacked(np.asarray(array[()]))

@@ -167,6 +167,19 @@ def test_lines_go_to_stdout_as_they_come(folder: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+def test_lines_go_to_a_named_pipe_as_they_come(folder: Path) -> None:
+    pipe = folder / "pipe.jsonl"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    got = ran(folder, "run", "circle-1", *DISCS, "--frames", "9", "-o", pipe.name, "--workers", "2")
+    assert (got.returncode, got.stdout) == (0, "")
+    lines = os.read(reader, 1 << 16).splitlines()
+    os.close(reader)
+    assert [json.loads(line)["frame"] for line in lines] == [*range(9)]
+
+
+@pytest.mark.slow
 def test_no_frames_make_an_empty_file(folder: Path) -> None:
     words = ("circle-1", "--source", "simulate", "--with", "frames=0")
     assert written(folder, "e1.csv", *words)[0] == written(folder, "e2.csv", *words, "--workers",

@@ -13,7 +13,9 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import FileIO
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -218,6 +220,27 @@ def test_an_older_output_stays_whole_until_the_next_is(tmp_path: Path) -> None:
     assert not (tmp_path / "out.unfinished.csv").exists()
 
 
+def test_a_line_that_is_interrupted_is_not_in_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Interrupted(FileIO):
+        def write(self, data: Any) -> int:
+            if data[:1] == b"n":
+                super().write(data[:2])
+                raise KeyboardInterrupt
+            return super().write(data)
+
+    monkeypatch.setattr(
+        "tactile_graph.cli.output.writers.opened_alone", lambda name: Interrupted(name, "w")
+    )
+    writer = LineFile("out.csv", JsonLines())
+    writer._put(writer.open(), "first\n")
+    with pytest.raises(KeyboardInterrupt):
+        writer._put(writer.open(), "next\n")
+    writer.close()
+    assert (tmp_path / "out.csv").read_text() == "first\n"
+
+
 def test_an_older_output_that_cannot_be_replaced_is_written_into(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -316,10 +339,12 @@ def test_a_folder_that_may_not_be_written_is_refused_before_the_work(
 
 def test_a_name_that_leaves_no_room_for_the_note_is_refused_before_the_work(tmp_path: Path) -> None:
     fits = f"{'o' * 228}.unfinished.jsonl"
-    for name in (fits, f"o{fits}"):
+    assert call("run", "discs", "-o", fits).exit_code == 0
+    for name in (f"o{fits}", f"{'o' * 250}.jsonl"):  # the latter leaves no room for itself
         got = call("run", "discs", "-o", name)
-    assert got.exit_code == 2
-    assert got.stderr.startswith(f"error: -o o{fits}: the name is too long: of o{fits}.meta.json,")
+        assert got.exit_code == 2
+        told = f"error: -o {name}: the name is too long: of {name}.meta.json,"
+        assert got.stderr.startswith(told)
     assert {p.name for p in tmp_path.iterdir() if "oo" in p.name} == {fits, f"{fits}.meta.json"}
     got = call("run", "discs", "-o", fits)  # whose older one would stay, and the new one beside it
     assert f"of {'o' * 228}.unfinished.unfinished.jsonl.meta.json, beside it" in got.stderr

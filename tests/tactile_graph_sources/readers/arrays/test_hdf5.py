@@ -256,3 +256,94 @@ def refer_to_a_text(file: Any) -> None:
 def test_references_of_other_programs_do_no_harm_beside_frames(fill: Fill, tmp_path: Path) -> None:
     frames, _ = frames_of(made(tmp_path / "a.h5", fill))
     np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+
+
+def kept(values: np.ndarray, **options: Any) -> Fill:
+    """Make room for all values, and write half of them."""
+
+    def fill(file: Any) -> None:
+        dataset = file.create_dataset("p", values.shape, values.dtype, **options)
+        dataset[: len(values) // 2] = values[: len(values) // 2]
+
+    return fill
+
+
+@pytest.mark.parametrize("dtype", ["f8", "f4", "u2"])
+def test_frames_that_nobody_wrote_are_missing_not_zeros(tmp_path: Path, dtype: str) -> None:
+    values = OBLONG.astype(dtype)
+    frames, report = frames_of(made(tmp_path / "a.h5", kept(values, chunks=(1, 6, 10))))
+    np.testing.assert_array_equal([f.image.values for f in frames[:6]], values[:6])
+    assert [f.image.valid is None for f in frames] == 6 * [True] + 6 * [False]
+    assert not any(f.image.valid.any() for f in frames[6:] if f.image.valid is not None)
+    told = "6 of 12 chunks of dataset 'p' never written, whose values are taken for missing"
+    whole = "(all of 6 of the 12 along its first axis)"
+    assert report.counts[f"recordings with {told} {whole}"] == 1
+
+
+def test_cells_that_nobody_wrote_are_missing_in_frames_of_others(tmp_path: Path) -> None:
+    def fill(file: Any) -> None:
+        dataset = file.create_dataset("p", OBLONG.shape, "f8", chunks=(5, 4, 10))
+        dataset[5:, 4:] = OBLONG[5:, 4:]
+
+    frames, _ = frames_of(made(tmp_path / "a.h5", fill))
+    assert [int(f.image.valid.sum()) for f in frames if f.image.valid is not None] == (
+        5 * [0] + 7 * [20]
+    )
+    np.testing.assert_array_equal(frames[7].image.values[4:], OBLONG[7, 4:])
+
+
+def test_a_dataset_of_which_nothing_was_written_holds_no_value(tmp_path: Path) -> None:
+    path = made(tmp_path / "a.h5", lambda file: file.create_dataset("p", OBLONG.shape, "f8"))
+    frames, report = frames_of(path)
+    assert not any(f.image.valid is None or f.image.valid.any() for f in frames)
+    assert any("dataset 'p' never written" in told for told in report.counts)
+
+
+@pytest.mark.parametrize("dated", [False, True])
+def test_times_that_nobody_wrote_are_none(tmp_path: Path, dated: bool) -> None:
+    def fill(file: Any) -> None:
+        times = np.arange(12.0) + 1.0
+        if dated:
+            days = np.datetime64("2024-01-01", "s") + np.arange(12).astype("m8[s]")
+            times = days.astype(h5py.opaque_dtype(days.dtype))
+        dataset = file.create_dataset("time", (12,), times.dtype, chunks=(1,))
+        for k in range(6):
+            dataset[k] = times[k]
+
+    frames, _ = frames_of(made(tmp_path / "a.h5", with_stack, fill))
+    assert [f.time_s is None for f in frames] == 6 * [False] + 6 * [True]
+    assert np.diff([f.time_s or 0.0 for f in frames[:6]]) == pytest.approx(1.0)
+
+
+def in_one_chunk_that_is_longer(file: Any) -> None:
+    file.create_dataset("p", data=OBLONG, chunks=(50, 6, 10), maxshape=(None, 6, 10))
+
+
+def cut_to_size(file: Any) -> None:
+    dataset = file.create_dataset("p", (40, 6, 10), "f8", chunks=(7, 4, 3), maxshape=(40, 6, 10))
+    dataset[:12] = OBLONG
+    dataset.resize(12, axis=0)
+
+
+def zeros_between(file: Any) -> None:
+    dataset = file.create_dataset("p", OBLONG.shape, "f8", chunks=(1, 6, 10), compression="gzip")
+    for k, frame in enumerate(OBLONG):
+        dataset[k] = frame
+
+
+def compact(file: Any) -> None:
+    how = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    how.set_layout(h5py.h5d.COMPACT)
+    space = h5py.h5s.create_simple(OBLONG.shape)
+    h5py.h5d.create(file.id, b"p", h5py.h5t.NATIVE_DOUBLE, space, how)
+    file["p"][...] = OBLONG
+
+
+@pytest.mark.parametrize(
+    "fill", [with_stack, in_one_chunk_that_is_longer, cut_to_size, zeros_between, compact]
+)
+def test_of_what_was_written_nothing_is_missing(tmp_path: Path, fill: Fill) -> None:
+    frames, report = frames_of(made(tmp_path / "a.h5", fill))
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+    assert all(f.image.valid is None for f in frames)
+    assert not any("never written" in told for told in report.counts)

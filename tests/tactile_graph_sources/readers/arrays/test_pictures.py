@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import io
 from pathlib import Path
 from typing import Any
@@ -145,3 +146,22 @@ def test_a_shape_that_is_told_is_that_of_the_picture(tmp_path: Path) -> None:
     assert frames_of(path, rows=48, columns=64)[0]
     with pytest.raises(DataError, match="48 rows and 64 columns, the settings say rows=5"):
         frames_of(path, rows=5, columns=5)
+
+
+def test_why_a_picture_cannot_be_read_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def fails(**how: Any) -> None:
+        raise ValueError("<COMPRESSION.LZW: 5> is unknown to <BytesIO object at 0x7f00>\nand more")
+
+    path = tiff(tmp_path, GREY)
+    monkeypatch.setattr(tifffile.TiffPageSeries, "asarray", lambda series: fails())
+    with pytest.raises(DataError, match=r"cannot be read: COMPRESSION.LZW: 5 is unknown to$"):
+        frames_of(path)
+
+
+def test_a_picture_packed_by_what_is_not_installed_is_told(tmp_path: Path):
+    if importlib.util.find_spec("imagecodecs"):
+        pytest.skip("it is installed")
+    path = tmp_path / "a.tif"
+    Picture.fromarray(GREY).save(path, compression="tiff_lzw")
+    with pytest.raises(DataError, match="requires the 'imagecodecs' package"):
+        frames_of(path)

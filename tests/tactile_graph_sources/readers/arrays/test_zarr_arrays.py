@@ -166,3 +166,30 @@ def test_times_in_bytes_are_read_as_texts(tmp_path: Path) -> None:
     stamps = np.array([f"12:00:{k:02d}" for k in range(12)], "S8")
     frames, _ = frames_of(group(tmp_path / "a.zarr", 2, p=OBLONG, time=stamps))
     assert [f.time_s for f in frames] == [1.0 * k for k in range(12)]
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_chunks_that_are_not_there_are_told(tmp_path: Path, version: Version) -> None:
+    """They may be lost, or hold what Zarr leaves out: nothing tells which."""
+    path = tmp_path / "p.zarr"
+    array = zarr.create_array(
+        str(path), data=OBLONG + 1.0, chunks=(2, 6, 10), zarr_format=version, fill_value=0.0
+    )
+    (path / array.metadata.encode_chunk_key((3, 0, 0))).unlink()
+    frames, report = frames_of(path)
+    np.testing.assert_array_equal(frames[5].image.values, OBLONG[5] + 1.0)
+    assert not np.any(frames[6].image.values)
+    told = [text for text in report.counts if "not there" in text]
+    assert told == [
+        "recordings with 1 of 6 chunks of array 'p' not there, from [6, 0, 0] on: read as its fill "
+        "value, 0.0, be they lost, or left out for holding nothing else"
+    ]
+
+
+def test_of_a_whole_array_no_chunk_is_told_of(tmp_path: Path) -> None:
+    for name, options in (("a", {"chunks": (5, 4, 3)}),
+                          ("b", {"chunks": (2, 3, 5), "shards": (4, 6, 10)})):  # fmt: skip
+        zarr.create_array(str(tmp_path / name), data=OBLONG + 1.0, **options)
+        assert not any("not there" in text for text in frames_of(tmp_path / name)[1].counts)
+    path = group(tmp_path / "g.zarr", run__p=OBLONG + 1.0)
+    assert not any("not there" in text for text in frames_of(path)[1].counts)
