@@ -13,7 +13,6 @@ from tactile_graph.errors import Degenerate
 from tactile_graph.steps.rules import require_same_shape
 from tactile_graph.wires import Image, Mask
 from tactile_graph_filters.nan import refuse_unbounded
-from tactile_graph_filters.readings.clipped_rest import cut_off_below, may_be_cut_off
 from tactile_graph_filters.thresholds.noise_level import noise_level
 
 NEWTON_PER_GRAM = 9.80665e-3
@@ -31,6 +30,9 @@ NOISE, NEARLY_ALL = 5.0, 0.9
 """Times the sum of all valid readings' sizes, over the root of their number, that a total must be
 for a load that no footprint shows: four standard deviations of a sum of normal noise. On pads of
 few cells so much of it at least, as noise is hardly ever of one sign."""
+
+CUT_OFF = 0.1
+"""Share of the valid cells that must read zero where noise lost what is less."""
 
 
 class Load(NamedTuple):
@@ -116,10 +118,7 @@ def counts_cells_at_rest(image: Image, value: Load) -> str:
     """Return what to say where much of total or area is of cells that do not stand out; or empty.
 
     Of an area only where cells read less than zero: then noise lies around it, and is no load.
-    Where much of what they read was left out as noise that a device cuts off, that is told.
     """
-    if told := _leaves_out(image, value):
-        return told
     n_counted = value.contact_area_cm2 / image.cell_area_cm2
     valid = True if image.valid is None else image.valid
     many = MANY_CELLS * image.values.size
@@ -128,7 +127,7 @@ def counts_cells_at_rest(image: Image, value: Load) -> str:
     level = noise_level(image)
     on = (image.values >= level) & valid
     if not on.any():  # a load on the whole pad leaves none to tell it from
-        return ""
+        return _seems_empty(image, valid)
     share = 1.0 - float(image.values[on].sum()) / value.total
     what, so = "total", ", and draws the centre along" if n_counted > many else ""
     so += (
@@ -147,20 +146,16 @@ def counts_cells_at_rest(image: Image, value: Load) -> str:
     )
 
 
-def _leaves_out(image: Image, value: Load) -> str:
-    """Return what to say where a total has less by what a device seems to cut off below zero."""
-    values = np.ascontiguousarray(image.values, np.float64)
-    usable = np.ones(image.shape, np.bool_) if image.valid is None else image.valid
-    whole = float(values[usable].sum())
-    if value.total >= (1.0 - LARGE_SHARE) * whole or values[usable].min() < 0.0:
-        return ""
-    left = -cut_off_below(values, usable, (values >= noise_level(image)) & usable)
-    if left == 0.0 or abs(whole - left - value.total) > LARGE_SHARE * left:
+def _seems_empty(image: Image, valid: NDArray[np.bool_] | bool) -> str:
+    """Return what to say where no cell stands out, as of noise that a device cuts off at zero."""
+    values = image.values[valid]
+    at_rest = np.count_nonzero(values == 0.0)
+    if values.min() < 0.0 or at_rest < CUT_OFF * values.size:
         return ""
     return (
-        f"the total leaves out {left:.3g} {image.unit} that cells read as noise does where a "
-        "device cuts off what is below zero; without a footprint at the port 'mask' it is the sum "
-        "of all"
+        f"no cell stands out of the others: the total is of {values.size - at_rest} of "
+        f"{values.size} cells that read a little, as noise does that ends at zero; if nothing lies "
+        "on them, 'above' leaves them out"
     )
 
 
@@ -184,8 +179,7 @@ class LoadOf:
     beside it read something at rest, or is the footprint's where one reads less than zero, as of
     noise around it. What is below zero counts for the total then, too, so that noise
     adds nothing to it, and an image is loaded where its footprint is, or the total is more than
-    noise sums up to. Where a device cuts off what is below zero, and what reads more beside the
-    footprint is the other half of normal noise, it is as if it had not (`cut_off_below`).
+    noise sums up to.
     """
 
     stateless = True
@@ -229,8 +223,6 @@ class LoadOf:
             _, total, peak, moment_x, moment_y, below, *its_own = measured
             n, its, its_x, its_y, n_beside, n_above = its_own
             loaded, weight = total > 0.0, total
-            if below == 0.0 and self._above <= 0.0 and may_be_cut_off(n_above, n_beside, total):
-                below = cut_off_below(values, usable, on)
             around_zero = below < 0.0 and self._above <= 0.0
             if around_zero:
                 share = min(NOISE / math.sqrt(values.size - left_out), NEARLY_ALL)

@@ -157,6 +157,14 @@ def test_what_noise_sums_up_to_is_of_the_valid_cells_alone():
     assert loaded <= 1
 
 
+def test_an_empty_mat_that_cuts_off_its_noise_at_zero_tells_that_no_cell_stands_out():
+    noise = np.random.default_rng(0).normal(0.0, 1.0, (48, 18))
+    empty = Image(noise.clip(min=0.0), quantity="kilopascal")
+    assert "no cell stands out" in counts_cells_at_rest(empty, LoadOf()(empty))
+    covered = Image(20.0 + noise, quantity="kilopascal")
+    assert not counts_cells_at_rest(covered, LoadOf()(covered))
+
+
 def test_a_footprint_changes_nothing_where_no_cell_reads_less_than_zero():
     """But the area, which is its own: makers of pads print the sum of all cells."""
     image = image_of([[0.0, 0.1, 3.0], [0.2, 0.0, 5.0]])
