@@ -18,7 +18,6 @@ from tactile_graph_likelihood.single.density.element_terms import (
     OFF,
     ON,
     OVER,
-    UNDER,
     UNKNOWN,
     States,
 )
@@ -29,9 +28,8 @@ FAINT = 0.015
 that is loaded up to its supply turns a converter's noise into 0.4 % on its idle elements."""
 LARGEST = 1e100
 """Reading beyond which no pad's unit can be; the squares of smaller ones are numbers."""
-SOME, MANY = 1500, 4096
-"""Touched elements beyond which an outline is looked at by its rim, since it holds most of them
-whole; and those beyond which it is searched for by blocks of them."""
+MANY = 4096
+"""Touched elements beyond which an outline is searched for by blocks of them."""
 RANK = 8
 """Of the reading that stands for a loaded element: a grain of sand alone bears more than it."""
 
@@ -115,16 +113,6 @@ class Readings(NamedTuple):
     def is_wide(self) -> bool:
         """Whether so much is touched that an outline is searched for by blocks of elements."""
         return self.touched > MANY
-
-    @property
-    def by_rim(self) -> bool:
-        """Whether so much is touched that an outline is looked at by its rim.
-
-        All elements must show from the same load, and none be held to the most there is.
-        """
-        if self.touched <= SOME:
-            return False
-        return not ((self.states == UNDER) | (self.states == OVER)).any()
 
     @property
     def shows(self) -> NDArray[np.bool_]:

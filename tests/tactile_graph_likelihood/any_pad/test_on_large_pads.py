@@ -100,16 +100,3 @@ def test_a_wide_outline_knows_that_nobody_told_its_elements_gap(
     more = found.radius_std_cm**2 - surer.radius_std_cm**2
     assert more == pytest.approx((0.5 * GAP_STD * PITCH_CM) ** 2)
     assert found.centre_std_cm == surer.centre_std_cm
-
-
-def test_looked_at_by_its_rim_an_outline_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    volts, _ = pressed(np.random.default_rng(35), 1.463, Pad(80, radii=(28.0, 34.0)))
-    image = Image(volts, (PITCH_CM,) * 2, quantity="volt")
-    by_rim = load("locate-circle").run(image)["circle"]
-    for room in ("single.readings", "any_pad.observation.observed"):
-        monkeypatch.setattr(f"tactile_graph_likelihood.{room}.SOME", 10_000)
-    one_by_one = load("locate-circle").run(image)["circle"]
-    assert by_rim.x_cm == pytest.approx(one_by_one.x_cm, abs=0.05 * PITCH_CM)
-    assert by_rim.radius_cm == pytest.approx(one_by_one.radius_cm, abs=0.05 * PITCH_CM)
-    assert by_rim.radius_std_cm == pytest.approx(one_by_one.radius_std_cm, rel=0.3)
-    assert by_rim != one_by_one
