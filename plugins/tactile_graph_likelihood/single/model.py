@@ -184,7 +184,7 @@ class Model:
         Without a point, near what has the moments of the touched elements.
         """
         problem = self.problem(readings)
-        attempt = 0 if readings.is_wide else NEAR
+        attempt = 0 if _way_of(readings) is attempted_on_large_pad else NEAR
         return self._find(problem, self._begin(point, problem), [attempt], _way_of(readings))
 
     def _find(
@@ -288,7 +288,8 @@ class Model:
         kind = OVAL if self.kind == ELLIPSE and belief is None else self.kind
         mean, precision = belief or _no_belief(_unknowns(self.kind, self.corners))
         states = readings.states
-        if states.size > LARGE_PAD and (readings.is_wide or readings.least_log is None):
+        loud = states.size > LARGE_PAD and readings.part_of is None
+        if loud and (readings.is_wide or readings.least_log is None):
             noise, states = _quiet(readings, noise)
         return Problem(
             kind, self.corners, readings.grid, readings.logs, states, noise, places, guess,
@@ -359,7 +360,7 @@ class Model:
 
 def _way_of(readings: Readings) -> Attempted:
     """Return how an outline is searched for."""
-    return attempted_on_large_pad if readings.is_wide else attempted
+    return attempted_on_large_pad if readings.is_wide and readings.part_of is None else attempted
 
 
 def _quiet(readings: Readings, noise: Values) -> tuple[Values, States]:

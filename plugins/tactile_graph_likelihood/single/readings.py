@@ -86,7 +86,8 @@ class Readings(NamedTuple):
     there; ``gap`` what is believed of elements'
     gap, where that was not said; ``length_std_cm`` how uncertain it leaves the lengths of an
     outline; ``filtered`` whether readings are not each their own, see `is_filtered`; ``ghosts``
-    whether they look as on a matrix without isolation, see `ghosts`.
+    whether they look as on a matrix without isolation, see `ghosts`; ``part_of`` all readings,
+    where most of what a wide outline covers whole is left out of these, see `in_part`.
     """
 
     grid: Values
@@ -103,6 +104,7 @@ class Readings(NamedTuple):
     length_std_cm: float = 0.0
     filtered: bool = False
     ghosts: bool = False
+    part_of: Readings | None = None
 
     @property
     def size_cm(self) -> tuple[float, float]:
@@ -112,7 +114,7 @@ class Readings(NamedTuple):
     @property
     def is_wide(self) -> bool:
         """Whether so much is touched that an outline is searched for by blocks of elements."""
-        return self.touched > MANY
+        return self.part_of is not None or self.touched > MANY
 
     @property
     def shows(self) -> NDArray[np.bool_]:
