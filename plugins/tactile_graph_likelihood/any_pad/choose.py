@@ -13,12 +13,13 @@ from tactile_graph_likelihood.any_pad.fits.contest import tops_of_each
 from tactile_graph_likelihood.any_pad.fits.first_fit import gains_hold
 from tactile_graph_likelihood.any_pad.fits.localise import AnyPad
 from tactile_graph_likelihood.any_pad.fits.pressure_chances import log_chances, shared_by
+from tactile_graph_likelihood.any_pad.fits.wide import sized_in_part
 from tactile_graph_likelihood.any_pad.locate import ANY_PAD, SoonSettings
 from tactile_graph_likelihood.any_pad.observation.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.observation.observed import NearlySquare, observed
 from tactile_graph_likelihood.any_pad.uncertainty.around import posterior_around
 from tactile_graph_likelihood.any_pad.uncertainty.ghosts import tells_of_ghosts
-from tactile_graph_likelihood.single.any_pressure import shares_by
+from tactile_graph_likelihood.single.any_pressure import EVEN, shares_by
 from tactile_graph_likelihood.single.fit_footprint import KINDS
 from tactile_graph_likelihood.single.likely import Likely, likely
 from tactile_graph_likelihood.single.model import Likeliest
@@ -128,6 +129,9 @@ class Locate:
         chance = probabilities(tops, readings)
         best = max(chance, key=chance.__getitem__)
         shares = dict.fromkeys(Located._fields[3:], 0.0) | chance
+        if readings.is_wide:
+            readings, even = sized_in_part(every[best], readings, tops[best][EVEN])
+            tops[best] = {EVEN: even}
         shape = likely(posterior_around(every[best], readings, tops[best]))
         return Located(shape, best, chance[best], **shares)
 

@@ -8,6 +8,7 @@ from tactile_graph.steps import Spread
 from tactile_graph.wires import Image
 from tactile_graph_likelihood.any_pad.fits.first_fit import first_fit
 from tactile_graph_likelihood.any_pad.fits.localise import AnyPad
+from tactile_graph_likelihood.any_pad.fits.wide import completed_on_wide
 from tactile_graph_likelihood.any_pad.observation.learned_pad import Placing
 from tactile_graph_likelihood.any_pad.observation.observed import NearlySquare
 from tactile_graph_likelihood.any_pad.uncertainty.around import posterior_around
@@ -50,7 +51,11 @@ class LocateOne:
     def posterior(self, image: Image) -> Posterior:
         """Return the outline's posterior; parameters and errors as of a call."""
         fits, readings, even = first_fit(image, self._pad, self._gap_cm, self._any_pad)
-        found = posterior_around(fits, readings, fits.completed(readings, even))
+        if readings.is_wide:
+            readings, tops = completed_on_wide(fits, readings, even)
+        else:
+            tops = fits.completed(readings, even)
+        found = posterior_around(fits, readings, tops)
         return self._placing(image, [found])[0]
 
 

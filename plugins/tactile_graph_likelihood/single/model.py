@@ -23,12 +23,7 @@ from tactile_graph_likelihood.geometry.outlines import (
     unknowns,
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse, to_ellipses, to_oval
-from tactile_graph_likelihood.large_pads.covered_whole import covered_around
-from tactile_graph_likelihood.large_pads.search import (
-    attempted_by_rim,
-    attempted_on_large_pad,
-    settled,
-)
+from tactile_graph_likelihood.large_pads.search import attempted_on_large_pad
 from tactile_graph_likelihood.large_pads.solid import least_shown
 from tactile_graph_likelihood.single.climbs.maximise import Mode
 from tactile_graph_likelihood.single.climbs.search import (
@@ -44,7 +39,6 @@ from tactile_graph_likelihood.single.density.element_terms import LEAST, OFF, ON
 from tactile_graph_likelihood.single.density.goodness_of_fit import (
     NO_FIT,
     GoodnessOfFit,
-    goodness_of_fit,
 )
 from tactile_graph_likelihood.single.density.problem import LARGE_PAD, Problem
 from tactile_graph_likelihood.single.noise import Noise, NoiseTaken
@@ -52,15 +46,15 @@ from tactile_graph_likelihood.single.posterior import Posterior
 from tactile_graph_likelihood.single.readings import Readings, is_row, readings_of, size_of
 from tactile_graph_likelihood.single.sampling.even_points import even_points
 from tactile_graph_likelihood.single.sampling.importance import normal_points, weighted_moments
-from tactile_graph_likelihood.single.sampling.sample import Sample, log_volume, sample_around
+from tactile_graph_likelihood.single.sampling.sample import Sample, sample_around
 
 Attempted = Kernel[..., tuple[float, float, GoodnessOfFit]]
 
 BLOCK = 32
 """Points between two looks at how sure the answer is."""
 
-WIDE_POINTS = 4 * BLOCK
-"""Where sampling ends of an outline that is looked at by its rim: it should have been normal."""
+WIDE_POINTS = 2 * BLOCK
+"""Where sampling ends of a wide outline, whose posterior is nearly normal where it fits at all."""
 
 SMALLEST_PITCHES = 0.4
 
@@ -190,7 +184,7 @@ class Model:
         Without a point, near what has the moments of the touched elements.
         """
         problem = self.problem(readings)
-        attempt = 0 if readings.is_wide else NEAR
+        attempt = 0 if _way_of(readings) is attempted_on_large_pad else NEAR
         return self._find(problem, self._begin(point, problem), [attempt], _way_of(readings))
 
     def _find(
@@ -270,22 +264,10 @@ class Model:
     def _sampled(
         self, readings: Readings, problem: Problem, mode: Mode, loose: float = 0.0
     ) -> Posterior:
-        whole, table = None, self._table(problem)
-        if readings.by_rim or readings.is_wide:
-            p, root = mode.p.copy(), mode.root.copy()
-            if (height := settled.call(problem, p, root)) > -math.inf:
-                top = Mode(p, root, height)
-                evidence = height + log_volume.call(problem.kind, p, root)
-                fit = goodness_of_fit.call(problem, p)
-                likeliest = Likeliest(top, evidence, False, GoodnessOfFit(*fit))
-                return self.normal_around(likeliest, row=is_row(readings))
-            if mode.height == -math.inf:
-                mode = Mode(p, root, -math.inf)
-            whole = covered_around.call(problem, mode.p)
-            if len(whole.runs):
-                table = table[:WIDE_POINTS]
-        worth = self.precision**-2
-        sample = sample_around.call(problem, whole, table, BLOCK, worth, loose, *mode)
+        worth, table = self.precision**-2, self._table(problem)
+        if readings.is_wide:
+            table = table[:WIDE_POINTS]
+        sample = sample_around.call(problem, table, BLOCK, worth, loose, *mode)
         if len(sample.points):
             return self._posterior_of(problem.kind, sample)
         raise self.impossible(readings)
@@ -306,7 +288,8 @@ class Model:
         kind = OVAL if self.kind == ELLIPSE and belief is None else self.kind
         mean, precision = belief or _no_belief(_unknowns(self.kind, self.corners))
         states = readings.states
-        if states.size > LARGE_PAD and (readings.is_wide or readings.least_log is None):
+        loud = states.size > LARGE_PAD and readings.part_of is None
+        if loud and (readings.is_wide or readings.least_log is None):
             noise, states = _quiet(readings, noise)
         return Problem(
             kind, self.corners, readings.grid, readings.logs, states, noise, places, guess,
@@ -377,9 +360,7 @@ class Model:
 
 def _way_of(readings: Readings) -> Attempted:
     """Return how an outline is searched for."""
-    if readings.is_wide:
-        return attempted_on_large_pad
-    return attempted_by_rim if readings.by_rim else attempted
+    return attempted_on_large_pad if readings.is_wide and readings.part_of is None else attempted
 
 
 def _quiet(readings: Readings, noise: Values) -> tuple[Values, States]:

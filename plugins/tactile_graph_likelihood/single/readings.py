@@ -18,7 +18,6 @@ from tactile_graph_likelihood.single.density.element_terms import (
     OFF,
     ON,
     OVER,
-    UNDER,
     UNKNOWN,
     States,
 )
@@ -29,9 +28,8 @@ FAINT = 0.015
 that is loaded up to its supply turns a converter's noise into 0.4 % on its idle elements."""
 LARGEST = 1e100
 """Reading beyond which no pad's unit can be; the squares of smaller ones are numbers."""
-SOME, MANY = 1500, 4096
-"""Touched elements beyond which an outline is looked at by its rim, since it holds most of them
-whole; and those beyond which it is searched for by blocks of them."""
+MANY = 4096
+"""Touched elements beyond which an outline is searched for by blocks of them."""
 RANK = 8
 """Of the reading that stands for a loaded element: a grain of sand alone bears more than it."""
 
@@ -88,7 +86,8 @@ class Readings(NamedTuple):
     there; ``gap`` what is believed of elements'
     gap, where that was not said; ``length_std_cm`` how uncertain it leaves the lengths of an
     outline; ``filtered`` whether readings are not each their own, see `is_filtered`; ``ghosts``
-    whether they look as on a matrix without isolation, see `ghosts`.
+    whether they look as on a matrix without isolation, see `ghosts`; ``part_of`` all readings,
+    where most of what a wide outline covers whole is left out of these, see `in_part`.
     """
 
     grid: Values
@@ -105,6 +104,7 @@ class Readings(NamedTuple):
     length_std_cm: float = 0.0
     filtered: bool = False
     ghosts: bool = False
+    part_of: Readings | None = None
 
     @property
     def size_cm(self) -> tuple[float, float]:
@@ -114,17 +114,7 @@ class Readings(NamedTuple):
     @property
     def is_wide(self) -> bool:
         """Whether so much is touched that an outline is searched for by blocks of elements."""
-        return self.touched > MANY
-
-    @property
-    def by_rim(self) -> bool:
-        """Whether so much is touched that an outline is looked at by its rim.
-
-        All elements must show from the same load, and none be held to the most there is.
-        """
-        if self.touched <= SOME:
-            return False
-        return not ((self.states == UNDER) | (self.states == OVER)).any()
+        return self.part_of is not None or self.touched > MANY
 
     @property
     def shows(self) -> NDArray[np.bool_]:

@@ -147,6 +147,6 @@ def test_a_side_is_moved_beyond_the_pad_with_a_lean_as_it_is(side):
     p = np.array([5.0, 5.0, 5.0, 5.0, 0.0, 4.0, 0.5, -0.3])
     for shift in (1.0, 2.0):
         trial = p.copy()
-        here = plainly(_with_side_moved)(problem, None, p, side, shift, np.zeros(8), trial)
+        here = plainly(_with_side_moved)(problem, p, side, shift, np.zeros(8), trial)
         found.append(here - plainly(log_rest)(problem, trial))
     assert found[0] == pytest.approx(found[1], abs=1e-6)

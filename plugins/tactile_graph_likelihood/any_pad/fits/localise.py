@@ -187,16 +187,17 @@ class AnyPad(UnderPressures):
         rim = without_hollow(self.told.kind, readings, p, float(p[-1]))
         if rim is not None:
             readings, even = rim, self.near(rim, p)
-        return (readings, even) if readings.through_foam else self._sized(readings, even)
+        return (readings, even) if readings.through_foam else self.sized(readings, even)
 
-    def _sized(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
+    def sized(self, readings: Readings, even: Likeliest) -> tuple[Readings, Likeliest]:
         """Return readings on elements as large as they tell, and the outline on them.
 
         As a face that presses with its rim tells it, where residuals rise to the rim and that is
-        clearly likelier: such a rim looks as if it lay between elements.
+        clearly likelier: such a rim looks as if it lay between elements. Not so where more than
+        4096 are touched.
         """
         found, its = sized(self.fit(EVEN), readings, even)
-        if readings.gap is None or not self.rises(readings, even):
+        if readings.gap is None or readings.is_wide or not self.rises(readings, even):
             return found, its
         bare = readings
         if not readings.gap.is_told:  # slivers that lie between elements hold such a fit fast

@@ -26,7 +26,6 @@ from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.single.density.element_terms import OFF, ON, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.readings import (
     MANY,
-    SOME,
     Gap,
     Readings,
     TurnOn,
@@ -99,7 +98,7 @@ def observed(
     -------
     Readings
         Elements whose reading is no more than noise are `UNDER` the load that would have shown in
-        their column; where more than 1500 are touched, all show from the same.
+        their column; where more than 4096 are touched, all show from the same.
 
     Raises
     ------
@@ -123,7 +122,7 @@ def observed(
     if not rise.above.size:
         raise Degenerate("the image has no element: no outline fits")
     found = _readings(image, pad, grid, rise, _known_loads(image, pad, rise, evened))
-    if found.touched > SOME and found.unheld is None:
+    if found.is_wide and found.unheld is None:
         found = uniform(found)
     if found.is_wide:
         return found._replace(gap=gap)
@@ -277,7 +276,7 @@ def _nearest(volts: Values, valid: NDArray[np.bool_] | None, pad: Pad) -> Values
 
 
 def uniform(readings: Readings) -> Readings:
-    """Return readings whose elements all show from the same load, as wide outlines' kernels ask."""
+    """Return readings whose elements all show from the same load, as blocks of them ask."""
     hidden = readings.logs[readings.states == UNDER]
     least_log = _median(hidden) if len(hidden) else readings.least_log
     return readings._replace(states=UNIFORM[readings.states], least_log=least_log)

@@ -88,10 +88,6 @@ would come to, for a quick answer: between two rows of elements nothing holds it
 UNSUREST = 2.3
 """The same of a rectangle under a pressure, which has nine unknowns, for any other answer."""
 
-UNSOUGHT = 0.5
-"""By how much a radius or half a side grows with the gap of elements where that is not sought, as
-on wide outlines."""
-
 TWO, FEWEST_OF_TWO, WELL = 5.0, 12, 0.7
 """Nats, over what neighbours share, by which two discs are likelier from which on an outline is
 taken for both of them; touched elements, at least; and a surprise that few outlines around two
@@ -149,7 +145,7 @@ class _Around:
             told.noise.sigma * float(readings.grid[2]) ** 1.5,
             unseen,
             self._missed() if best == EVEN else 0.0,
-            is_in_parts(readings.through_foam or readings) or self._is_two(),
+            is_in_parts(readings.through_foam or readings.part_of or readings) or self._is_two(),
             # Learned gains leave so little that what is always unseen would look vague.
             0.0 if self.fits.unevened is None else unseen,
         )
@@ -158,8 +154,6 @@ class _Around:
             whole = unsized(whole, COVERED * float(readings.grid[2]))
         if readings.filtered:
             whole = as_filtered(whole, float(readings.grid[2]))
-        if readings.is_wide and readings.gap is not None and not readings.gap.is_told:
-            whole = unsized(whole, UNSOUGHT * readings.gap.std_cm)
         if readings.ghosts:
             whole = as_ghostly(whole)
         whole = stretched(whole, readings)

@@ -35,6 +35,9 @@ FEW_POINTS = 64
 FINER = 2.0
 """By how much more precisely an outline is sampled the fewer elements are touched."""
 
+COARSER = 1.3
+"""By how much less precisely a wide outline is: a point costs much, and its mean is sure."""
+
 
 @dataclass(frozen=True)
 class UnderPressure:
@@ -111,6 +114,8 @@ class UnderPressure:
             return model.posterior_around(readings, _first(top, 1 + n), loose)
         # Of few elements a point costs little, and the posterior is far from normal.
         precision = told.precision / (1.0 + FINER * fewness(readings))
+        if readings.is_wide:
+            precision *= COARSER
         estimated = ("contrast",) if by_law else PARTS.get(part, (part,))
         noise = changed(noise, estimated=estimated)
         model = changed(told, noise=noise, precision=precision)

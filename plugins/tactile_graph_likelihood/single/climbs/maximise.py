@@ -11,16 +11,15 @@ from tactile_graph.compiled import compiled_as_is
 from tactile_graph_likelihood.geometry.linear import cholesky, solved
 from tactile_graph_likelihood.geometry.outline_prior import pulled_in
 from tactile_graph_likelihood.geometry.outlines import DISC, RECTANGLE, Values
-from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole, keep_current
 from tactile_graph_likelihood.single.density.element_terms import STRAYS
-from tactile_graph_likelihood.single.density.evaluate import information_at, log_likelihood_at
 from tactile_graph_likelihood.single.density.information import (
     STEP,
     Information,
     add_prior,
+    information,
     steps_of,
 )
-from tactile_graph_likelihood.single.density.log_posterior import log_rest
+from tactile_graph_likelihood.single.density.log_posterior import log_likelihood, log_rest
 from tactile_graph_likelihood.single.density.problem import Problem, with_elements
 
 ROUNDS, HALVINGS = 25, 6
@@ -46,23 +45,19 @@ class Mode(NamedTuple):
 
 
 @compiled_as_is
-def maximise(
-    problem: Problem, whole: CoveredWhole | None, p: Values, root: Values, enough: float,
-    stride: float,
-) -> float:  # fmt: skip
+def maximise(problem: Problem, p: Values, root: Values, enough: float, stride: float) -> float:
     """Bring a point, in place, to the top of the log posterior.
 
     Parameters
     ----------
-    problem, whole, p
-        As in `evaluate.log_likelihood_at`; of a prior for any angle. ``whole`` is kept up with the
-        point.
+    problem, p
+        As in `log_posterior.log_likelihood`; of a prior for any angle.
     root : ndarray, shape (K, K)
         Written: the lower root of the information at the top.
     enough : float
         Gain in log posterior still promised, below which the search ends.
     stride : float
-        Pitches that an edge moves at most in a round.
+        Pitches that an edge moves at most in a round; infinite but for wide outlines.
 
     Returns
     -------
@@ -75,10 +70,10 @@ def maximise(
     ahead = Information(np.empty(n), np.empty((n, n)))
     kind, corners, prior = problem.kind, problem.corners, problem.prior
     pulled_in(kind, corners, p, prior)
-    keep_current(problem, whole, p)
-    now, new = log_rest(problem, p) + information_at(problem, whole, p, out), -math.inf
+    now, new = log_rest(problem, p) + information(problem, p, out), -math.inf
     add_prior(problem, p, out)
-    tied = HELD if kind == DISC or whole is not None else SLIDING if kind == RECTANGLE else TIED
+    held = kind == DISC or stride < math.inf
+    tied = HELD if held else SLIDING if kind == RECTANGLE else TIED
     damping, widths = 0.0, steps_of(kind, corners, p, problem.grid)
     for _ in range(ROUNDS):
         if not _rooted(out.matrix, widths, tied, damping, root):
@@ -93,16 +88,14 @@ def maximise(
             pulled_in(kind, corners, trial, prior)
             new = log_rest(problem, trial)
             if new > -math.inf:
-                keep_current(problem, whole, trial)
                 if share == first:  # mostly the next point: a second look would cost more
-                    new += information_at(problem, whole, trial, ahead)
+                    new += information(problem, trial, ahead)
                 else:
-                    new += log_likelihood_at(problem, whole, trial)
+                    new += log_likelihood(problem, trial)
             if new > now:
                 break
             share *= 0.4
         if not new > now:
-            keep_current(problem, whole, p)
             if damping > 50.0:
                 break
             damping = max(1.0, 10.0 * damping)
@@ -110,7 +103,7 @@ def maximise(
         gained, now = new - now, new
         p[:] = trial
         if share < first:
-            information_at(problem, whole, p, ahead)
+            information(problem, p, ahead)
         out, ahead = ahead, out
         add_prior(problem, p, out)
         widths = steps_of(kind, corners, p, problem.grid)

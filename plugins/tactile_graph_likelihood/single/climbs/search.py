@@ -223,7 +223,7 @@ def attempted(
     Parameters
     ----------
     problem : Problem
-        Of at most 1500 touched elements.
+        Of at most 4096 touched elements.
     table : ndarray, shape (N, K)
         As in `sample.Plan`.
     start : ndarray, shape (0,) or (K,)
@@ -245,8 +245,8 @@ def attempted(
         normal around it, and how well it fits.
     """
     if begins_softly(problem, table, start, attempt, p):
-        maximise(softened(problem), None, p, root, ROUGH, math.inf)
-    height = maximise(problem, None, p, root, ENOUGH, math.inf)
+        maximise(softened(problem), p, root, ROUGH, math.inf)
+    height = maximise(problem, p, root, ENOUGH, math.inf)
     return looked_at(problem, p, root, height, least)
 
 

@@ -23,16 +23,18 @@ from tactile_graph_likelihood.geometry.outlines import (
     sizes,
 )
 from tactile_graph_likelihood.geometry.oval import as_ellipse, log_stretch, to_oval
-from tactile_graph_likelihood.large_pads.covered_whole import CoveredWhole
 from tactile_graph_likelihood.single.climbs.maximise import ENOUGH, Mode, maximise
 from tactile_graph_likelihood.single.density.element_terms import LEAN_X, ROOT_TWO_PI
-from tactile_graph_likelihood.single.density.evaluate import log_likelihood_at
 from tactile_graph_likelihood.single.density.goodness_of_fit import (
     NO_FIT,
     GoodnessOfFit,
     goodness_of_fit,
 )
-from tactile_graph_likelihood.single.density.log_posterior import LN_TWO_PI, log_rest
+from tactile_graph_likelihood.single.density.log_posterior import (
+    LN_TWO_PI,
+    log_likelihood,
+    log_rest,
+)
 from tactile_graph_likelihood.single.density.problem import Problem, over_the_edge, turned_as
 from tactile_graph_likelihood.single.sampling.importance import (
     FEWEST,
@@ -146,17 +148,14 @@ def log_volume(kind: int, p: Values, root: Values) -> float:
 
 
 @compiled_as_is
-def widen_to_other_ends(
-    problem: Problem, whole: CoveredWhole | None, mode: Mode, covariance: Values
-) -> Beyond:
+def widen_to_other_ends(problem: Problem, mode: Mode, covariance: Values) -> Beyond:
     """Widen a covariance, in place, towards each side's other likely places.
 
     A void at an end of an outline looks like the end itself.
 
     Parameters
     ----------
-    problem, whole
-        As in `evaluate.log_likelihood_at`.
+    problem : Problem
     mode : Mode
     covariance : ndarray, shape (K, K)
         Of the posterior around it.
@@ -182,7 +181,7 @@ def widen_to_other_ends(
         place, shift, top = 0, SHIFTS[0], mode.height
         area = mean = square = 0.0
         while True:
-            here = _with_side_moved(problem, whole, p, side, shift, move, trial)
+            here = _with_side_moved(problem, p, side, shift, move, trial)
             if place < len(SHIFTS):
                 _add_outer(covariance, math.exp(FLATTER * min(here - mode.height, 0.0)), move)
                 top = max(top, here)
@@ -213,12 +212,11 @@ def widen_to_other_ends(
 def beyond_the_pad(problem: Problem, p: Values, root: Values) -> Values:
     """Return the covariance, shape (K, K), by which sides beyond the pad's edge widen a mode.
 
-    ``p`` and ``root`` are of a `Mode`; the covariance of an oval's is an `ELLIPSE`'s. For outlines
-    that are not wide.
+    ``p`` and ``root`` are of a `Mode`; the covariance of an oval's is an `ELLIPSE`'s.
     """
     near, n = turned_as(problem, p), p.shape[0]
-    mode = Mode(p, root, log_rest(near, p) + log_likelihood_at(near, None, p))
-    beyond = widen_to_other_ends(near, None, mode, np.zeros((n, n)))
+    mode = Mode(p, root, log_rest(near, p) + log_likelihood(near, p))
+    beyond = widen_to_other_ends(near, mode, np.zeros((n, n)))
     found = beyond.slack + beyond.wider
     _add_outer(found, 1.0, beyond.point - p)
     if problem.kind == OVAL:
@@ -252,9 +250,8 @@ def _add_outer(matrix: Values, share: float, move: Values) -> None:
 
 @compiled_as_is
 def _with_side_moved(
-    problem: Problem, whole: CoveredWhole | None, p: Values, side: int, shift: float, move: Values,
-    trial: Values,
-) -> float:  # fmt: skip
+    problem: Problem, p: Values, side: int, shift: float, move: Values, trial: Values
+) -> float:
     """Return the log posterior with a side moved outwards by pitches; write move and point."""
     kind = problem.kind
     at = as_ellipse(p) if kind == OVAL else p
@@ -272,7 +269,7 @@ def _with_side_moved(
         move[k] = trial[k] - p[k]
     here = log_rest(problem, trial)
     if here > -math.inf:
-        here += log_likelihood_at(problem, whole, trial)
+        here += log_likelihood(problem, trial)
     return here
 
 
@@ -391,15 +388,13 @@ def next_covariance(draws: Draws, count: int, first: Values, centre: Values) -> 
 
 @compiled_as_is
 def importance_sample(
-    problem: Problem, whole: CoveredWhole | None, plan: Plan, mode: Values, covariance: Values,
-    beyond: Beyond, draws: Draws,
-) -> tuple[int, float, float]:  # fmt: skip
+    problem: Problem, plan: Plan, mode: Values, covariance: Values, beyond: Beyond, draws: Draws
+) -> tuple[int, float, float]:
     """Sample the posterior around its mode.
 
     Parameters
     ----------
-    problem, whole
-        As in `evaluate.log_likelihood_at`.
+    problem : Problem
     plan : Plan
     mode, covariance : ndarray, shape (K,) and (K, K)
         Of the first proposal; it is drawn wider.
@@ -438,7 +433,7 @@ def importance_sample(
             draw(proposals, made - 1, plan.table[i], draws.points[i])
             here = log_rest(problem, draws.points[i])
             if here > -math.inf:
-                here += log_likelihood_at(problem, whole, draws.points[i])
+                here += log_likelihood(problem, draws.points[i])
                 if kind == OVAL:
                     here += log_stretch(draws.points[i])
             draws.logs_p[i] = here
@@ -458,15 +453,14 @@ def importance_sample(
 
 @compiled_as_is
 def sample_around(
-    problem: Problem, whole: CoveredWhole | None, table: Values, block: int, worth: float,
-    loose: float, p: Values, root: Values, height: float,
+    problem: Problem, table: Values, block: int, worth: float, loose: float, p: Values,
+    root: Values, height: float,
 ) -> Sample:  # fmt: skip
     """Return the posterior around a mode.
 
     Parameters
     ----------
-    problem, whole
-        As in `evaluate.log_likelihood_at`.
+    problem : Problem
     table, block, worth
         Of the `Plan`: handing over more than one record costs 15 us.
     loose : float
@@ -476,17 +470,17 @@ def sample_around(
         there were no more pad beyond its edge than before it; ``p`` and ``root`` are written.
     """
     if height == -math.inf:
-        maximise(over_the_edge(problem), whole, p, root, ENOUGH, math.inf)
+        maximise(over_the_edge(problem), p, root, ENOUGH, math.inf)
     plan, kind, n, count = Plan(table, block, worth), problem.kind, p.shape[0], table.shape[0]
     near = turned_as(problem, p)
     # the search may have been told another noise, and another prior beyond the pad's edge
-    mode = Mode(p, root, log_rest(near, p) + log_likelihood_at(near, whole, p))
+    mode = Mode(p, root, log_rest(near, p) + log_likelihood(near, p))
     draws = no_draws(count, n)
     covariance = inverted(mode.root)
     for k in range(2 + sizes(kind)):
         covariance[k, k] += loose
-    beyond = widen_to_other_ends(near, whole, mode, covariance)
-    used, evidence, equal = importance_sample(near, whole, plan, mode.p, covariance, beyond, draws)
+    beyond = widen_to_other_ends(near, mode, covariance)
+    used, evidence, equal = importance_sample(near, plan, mode.p, covariance, beyond, draws)
     fit = NO_FIT
     if equal <= 0.0:
         used = 0

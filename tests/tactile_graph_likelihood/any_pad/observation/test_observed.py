@@ -165,8 +165,8 @@ def test_on_a_large_pad_one_least_load_stands_for_all(monkeypatch):
     assert set(np.unique(found.states)) == {OFF, ON}
     under = seen.logs[seen.states == UNDER]
     assert found.least_log == np.median(under)
-    room = "tactile_graph_likelihood.any_pad.observation"
-    monkeypatch.setattr(f"{room}.observed.SOME", found.touched - 1)
+    room = "tactile_graph_likelihood.single.readings"
+    monkeypatch.setattr(f"{room}.MANY", found.touched - 1)
     assert UNDER not in observed(image_of(values), PAD).states
 
 
