@@ -85,36 +85,48 @@ class _Error:
 
 @dataclass
 class _Noticed:
-    """What a node had to say in the frames looked through: how often, and the first time."""
+    """What a node had to say in the frames looked through.
 
-    text: str = ""
-    first_frame: int = -1
-    n: int = 0
+    ``told`` holds, by words without their numbers, the first text, its frame, and how many frames
+    said the like.
+    """
+
     n_ran: int = 0
+    told: dict[str, tuple[str, int, int]] = field(default_factory=dict)
 
     def add(self, text: str, frame: int) -> None:
         self.n_ran += 1
-        self.n += bool(text)
-        if text and not self.text:
-            self.text, self.first_frame = text, frame
+        if text:
+            first, at, n = self.told.get(key := _NUMBER.sub("#", text), (text, frame, 0))
+            self.told[key] = (first, at, n + 1)
 
     def join(self, later: _Noticed) -> None:
         """Take in what came of later frames."""
-        if later.text and not self.text:
-            self.text, self.first_frame = later.text, later.first_frame
-        self.n += later.n
         self.n_ran += later.n_ran
+        for key, (text, frame, more) in later.told.items():
+            first, at, n = self.told.get(key, (text, frame, 0))
+            self.told[key] = (first, at, n + more)
 
     @property
-    def usual(self) -> bool:
-        """Whether a tenth of the frames or more were so: a single one may be a faulty reading."""
-        return self.n >= OFTEN * self.n_ran and (self.n > 1 or self.n_ran == 1)
+    def usual(self) -> list[tuple[str, str]]:
+        """What a tenth of the frames or more said, and in how many; one may be a faulty reading.
 
-    @property
-    def times(self) -> str:
+        Where that said something but no two the like, the first of it.
+        """
+        often = [kind for kind in self.told.values() if self._is_often(kind[2])]
+        n = sum(n for _, _, n in self.told.values())
+        if not often and self._is_often(n):
+            text, frame, _ = next(iter(self.told.values()))
+            often = [(text, frame, n)]
+        return [(text, self._times(frame, n)) for text, frame, n in often]
+
+    def _is_often(self, n: int) -> bool:
+        return n >= OFTEN * self.n_ran and (n > 1 or n == self.n_ran == 1)
+
+    def _times(self, frame: int, n: int) -> str:
         if self.n_ran == 1:
-            return f"in frame {self.first_frame}"
-        return f"in {self.n} of {self.n_ran} frames looked at, first in frame {self.first_frame}"
+            return f"in frame {frame}"
+        return f"in {n} of {self.n_ran} frames looked at, first in frame {frame}"
 
 
 @dataclass
@@ -136,7 +148,7 @@ class Tally:
     assumed : dict
         What a node took that nobody said, and in which frame first.
     ranges : dict
-        By node, the least and the largest of the first numbers in what it took.
+        By node, the least and the largest of the first numbers in what it took, in the same words.
     noticed : dict
         By node, what it has to say of its answers.
     failed, skipped, not_finite : dict
@@ -289,7 +301,9 @@ class Tally:
 
     def _widen(self, node: str, text: str) -> None:
         """Note the number in what a node took, which may be another in each frame."""
-        if (found := _DECIMAL.search(text)) is not None:
+        words = _DECIMAL.sub("#", self.assumed[node][0])
+        found = _DECIMAL.search(text)
+        if found is not None and _DECIMAL.sub("#", text) == words:
             number = float(found[0])
             low, high = self.ranges.get(node, (number, number))
             self.ranges[node] = (min(low, number), max(high, number))
@@ -332,7 +346,11 @@ class Tally:
             "frames_not_finite": self.n_not_finite,
             "failures_by_node": failed,
             "assumed": {node: told for node, (told, _) in self.assumed.items()},
-            "notices": {node: found.text for node, found in self.noticed.items() if found.usual},
+            "notices": {
+                node: "; ".join(text for text, _ in found.usual)
+                for node, found in self.noticed.items()
+                if found.usual
+            },
         }
 
     # -- of several parts --------------------------------------------------------------------
@@ -375,7 +393,8 @@ class Tally:
         tally = cls(outputs, **{name: data[name] for name in COUNTS})
         tally.assumed = {node: (text, frame) for node, (text, frame) in data["assumed"].items()}
         tally.ranges = {node: (low, high) for node, (low, high) in data.get("ranges", {}).items()}
-        tally.noticed = {node: _Noticed(*n) for node, n in data["noticed"].items()}
+        for node, (n_ran, told) in data["noticed"].items():
+            tally.noticed[node] = _Noticed(n_ran, {key: (*kind,) for key, kind in told.items()})
         for name in ("failed", "skipped", "not_finite"):
             rows = {(a, b): _Kept(t, tuple(item), *n) for a, b, t, item, *n in data[name]}
             setattr(tally, name, rows)
@@ -422,8 +441,8 @@ class Tally:
             others = f"; {low:g} to {high:g} in the frames looked at" if low < high else ""
             yield _labelled("assumed", "cyan", f"{node}: {told} (in frame {frame}{others})")
         for node, found in self.noticed.items():
-            if found.usual:
-                yield _labelled("notice", "yellow", f"{node}: {found.text} ({found.times})")
+            for text, times in found.usual:
+                yield _labelled("notice", "yellow", f"{node}: {text} ({times})")
         for (output, origin), kept in self.skipped.items():
             at = "" if origin in ("", output) else f"{origin}: "
             text = f"{output} {_times(kept)}: {at}{kept.text}"

@@ -271,6 +271,32 @@ def test_what_more_than_half_of_the_frames_say_is_told_in_closing_and_kept(
     assert kept["result"]["notices"] == ({"c": words} if told else {})
 
 
+class Talkative:
+    """Says one thing of high peaks and another of low ones."""
+
+    def __call__(self, image: Image) -> float:
+        return image.peak
+
+    @staticmethod
+    def notice(image: Image) -> str:
+        return f"{image.peak:g} is much" if image.peak > 2 else f"{image.peak:g} is little"
+
+
+def test_notices_that_differ_in_more_than_numbers_are_counted_apart(
+    hand_made: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install(monkeypatch, hand_made, steps={"talkative": Talkative})
+    (hand_made / "r.txt").write_text("3\n1\n4\n5\n2\n")
+    (hand_made / "p.yaml").write_text(
+        "{pipeline: p, nodes: {c: {step: talkative, in: frame}}, outputs: [c]}"
+    )
+    got = call("run", "p.yaml", "r.txt")
+    assert [x for x in got.stderr.splitlines() if x.startswith("notice")] == [
+        "notice   c: 3 is much (in 3 of 5 frames looked at, first in frame 0)",
+        "notice   c: 1 is little (in 2 of 5 frames looked at, first in frame 1)",
+    ]
+
+
 def test_explain_says_it_of_its_frame(hand_made: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     install(monkeypatch, hand_made, steps={"counting": Counting})
     (hand_made / "r.txt").write_text("1\n3\n")
