@@ -291,7 +291,8 @@ def test_notices_that_differ_in_more_than_numbers_are_counted_apart(
         "{pipeline: p, nodes: {c: {step: talkative, in: frame}}, outputs: [c]}"
     )
     got = call("run", "p.yaml", "r.txt")
-    assert [x for x in got.stderr.splitlines() if x.startswith("notice")] == [
+    lines = (got.stdout + got.stderr).splitlines()
+    assert [line for line in lines if line.startswith("notice")] == [
         "notice   c: 3 is much (in 3 of 5 frames looked at, first in frame 0)",
         "notice   c: 1 is little (in 2 of 5 frames looked at, first in frame 1)",
     ]
