@@ -17,9 +17,11 @@ from tactile_graph.foreign_text import visible
 from tactile_graph.pipeline.graph import Graph
 from tactile_graph.pipeline.named_files.named_files import content_of
 from tactile_graph.pipeline.plain import plain
-from tactile_graph.plugins.names import Plugin
+from tactile_graph.plugin_code import digests_of
+from tactile_graph.plugins.names import OWN, Plugin
 from tactile_graph.plugins.registry import Registry, installed
 from tactile_graph.steps.injected import Report
+from tactile_graph.steps.signature import Signature
 
 
 def sidecar(output: str | Path) -> Path:
@@ -66,30 +68,37 @@ def provenance(pipeline: Graph, seed: int, report: Report, **more: Any) -> dict[
 
 
 def code_digest(graphs: Sequence[Graph]) -> str:
-    """Return a digest of the project's own code, and of that of the packages steps are of."""
-    names = {"tactile_graph", *(name for graph in graphs for name in _packages(graph))}
-    code = sorted(path for name in names for path in _places(name))
-    return digest_of([content_of(path, "*.py") for path in code])
+    """Return a digest of the project's own code, and of all that the plugins of steps installed."""
+    own, others = {"tactile_graph"}, dict[str, set[str]]()
+    for graph in graphs:
+        registry = graph.registry or installed()
+        for signature in _signatures(graph):
+            module = getattr(signature.target, "__module__", None) or ""
+            package = registry.offer("steps", signature.name, graph.file).plugin.package
+            if package == OWN:
+                own.add(module.partition(".")[0])
+            else:
+                others.setdefault(package, set()).add(module)
+    folders = (Path(file).parent for name in sorted(own) if (file := _file(name)))
+    return digest_of([
+        [content_of(folder, "*.py") for folder in folders],
+        [digests_of(package, modules) for package, modules in sorted(others.items())],
+    ])  # fmt: skip
 
 
-def _places(package: str) -> Iterator[Path]:
-    """Yield where a package's code lies; nothing for one that was typed, or lies in an archive."""
-    module = sys.modules.get(package)
-    file, folders = (getattr(module, name, None) for name in ("__file__", "__path__"))
-    if file:
-        place = Path(folders[0] if folders else file)
-        yield from [place] if place.exists() else []
+def _file(package: str) -> str | None:
+    """Return the first file of a package of the project's own; None where it is an archive's."""
+    file = getattr(sys.modules.get(package), "__file__", None)
+    return file if file and Path(file).exists() else None
 
 
-def _packages(graph: Graph) -> Iterator[str]:
-    signatures = [n.signature for n in graph.nodes.values()]
-    signatures += [graph.source.signature] if graph.source is not None else []
-    for signature in signatures:
-        if signature is not None:
-            yield getattr(signature.target, "__module__", "").partition(".")[0]
+def _signatures(graph: Graph) -> Iterator[Signature]:
+    found = [n.signature for n in graph.nodes.values()]
+    found += [graph.source.signature] if graph.source is not None else []
+    yield from (signature for signature in found if signature is not None)
     for node in graph.nodes.values():
         if node.inner is not None:
-            yield from _packages(node.inner)
+            yield from _signatures(node.inner)
 
 
 def digest_of(data: Any) -> str:

@@ -10,6 +10,8 @@ from typing import Any
 
 NEW_OBJECTS = 100_000
 """Until garbage is searched for among them: imports make as many that stay."""
+WAIT_S = 2.0
+"""Until it is said for whom the process waits at its end."""
 
 
 def main() -> None:
@@ -31,6 +33,7 @@ def main() -> None:
         sys.exit(130)
     finally:
         _end_at_once()
+        _tell_who_goes_on()
 
 
 def _end_at_once() -> None:
@@ -39,6 +42,24 @@ def _end_at_once() -> None:
 
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def _tell_who_goes_on() -> None:
+    """Say after a while which threads Python waits for before it ends; those of plugins, mostly."""
+    import threading
+
+    def going_on() -> list[str]:
+        others = (t for t in threading.enumerate() if t is not threading.main_thread())
+        return [t.name for t in others if not t.daemon]
+
+    def tell() -> None:
+        if names := ", ".join(going_on()):
+            sys.stderr.write(f"waiting for threads that go on: {names}; Ctrl-C ends them\n")
+
+    if going_on():
+        timer = threading.Timer(WAIT_S, tell)
+        timer.daemon = True
+        timer.start()
 
 
 def _open_streams() -> None:

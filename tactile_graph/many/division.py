@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from tactile_graph.engine.outcomes.outcome import NO_VALUE
 from tactile_graph.engine.outcomes.outcomes import Outcomes
 from tactile_graph.engine.plan import Plan
 from tactile_graph.pipeline.graph import Node
@@ -91,7 +92,8 @@ def one_process_only(plan: Plan) -> str:
 class Settling:
     """Whether state that began anew has become what it would be had it seen all frames before.
 
-    A step that has run on as many frames as it remembers is settled, once those are that it reads.
+    A step that has answered for as many frames as it remembers is settled, once those are that it
+    reads: of a frame for which it raised nobody knows whether it remembers it.
 
     Parameters
     ----------
@@ -104,10 +106,9 @@ class Settling:
 
     def add(self, result: Outcomes) -> None:
         """Take a frame in."""
-        times_us = result.times_us
         for name, left in self._left.items():
             if left > 0:
-                self._left[name] = left - (times_us[name] > 0.0)
+                self._left[name] = left - (result.outcome(name).__class__ not in NO_VALUE)
                 return  # those behind it may have read what was not settled
 
     @property

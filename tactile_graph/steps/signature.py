@@ -107,6 +107,11 @@ class Signature:
     stateful: bool = False
     identity: str = ""
 
+    @property
+    def is_own(self) -> bool:
+        """Whether it is the project's own, whose identity names no plugin."""
+        return bool(self.identity) and "." not in self.identity
+
     @cached_property
     def doc(self) -> str:
         """The step's whole docstring, dedented."""

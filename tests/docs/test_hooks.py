@@ -194,6 +194,23 @@ def test_a_format_that_fails_to_recognise_is_told_by_plugin(
         next(iter(recording(path=path, report=Report())))
 
 
+def test_inspect_names_file_and_line_where_a_format_fails_to_read(
+    plugin: Plugin, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plugin("Recordings, read and written")
+
+    def read(reading: object) -> None:
+        raise ValueError("row is odd")
+
+    bad = mypad().FORMAT._replace(recognises=lambda head: True, read=read)
+    monkeypatch.setattr(mypad(), "FORMAT", bad)
+    path = tmp_path / "x"
+    path.write_text("hello")
+    got = CliRunner().invoke(cli, ["inspect", str(path)])
+    assert got.exit_code == 2
+    assert f"{path}: its reader breaks: ValueError: row is odd ({__file__}:" in got.output
+
+
 def test_a_format_that_fails_to_recognise_leaves_the_others_to_be_asked(
     plugin: Plugin,
     tmp_path: Path,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, contextmanager
 from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,9 @@ from tactile_graph.cli.completions import complete_source, complete_with
 from tactile_graph.cli.numbers import Finite
 from tactile_graph.cli.say import say
 from tactile_graph.cli.targets import check_targets
+from tactile_graph.errors import PluginError, TactileGraphError
 from tactile_graph.foreign_text import pasted
+from tactile_graph.plugins.names import OWN, Offer
 from tactile_graph.plugins.registry import installed
 
 if TYPE_CHECKING:
@@ -104,6 +106,7 @@ def convert(
 
     ending = _check(recordings, target, source, overwrite)
     writer: RecordingWriter = installed().load(OFFERS, ending)
+    offer = installed().offer(OFFERS, ending)
     report, kept, opened = Report(), _Carried(), ExitStack()
     try:
         wanted = (source, settings, told, n_frames)
@@ -118,7 +121,7 @@ def convert(
             frames = kept.until_ended(frames, report)
         about = ", ".join(r.name for r in recordings) or str(source)
         with opened:
-            n = _written(writer, target, kept.watch(islice(frames, n_frames)), about, report)
+            n = _written(offer, target, kept.watch(islice(frames, n_frames)), about, report)
     except ValueError as error:
         raise UsageError(str(error)) from error
     if n or kept.ended is None:
@@ -189,14 +192,45 @@ def _frames(
 
 
 def _written(
-    writer: RecordingWriter, target: Path, frames: Iterator[Frame], about: str, report: Report
+    offer: Offer, target: Path, frames: Iterator[Frame], about: str, report: Report
 ) -> int:
-    """Write frames, a pitch that is assumed as such; return how many there were."""
+    """Write frames, a pitch that is assumed as such; return how many there were.
+
+    Raises
+    ------
+    PluginError
+        If another plugin's writer breaks, or says that it wrote what is not there.
+    """
     from tactile_graph_sources.readers.reading import PITCH_UNTOLD
 
+    writer: RecordingWriter = offer.target
     first = list(islice(frames, 1))  # with it is known whether anybody says the pitch
     write = writer.write_untold if PITCH_UNTOLD in report.counts else None
-    return (write or writer.write)(target, chain(first, frames), about)
+    with _named(offer, target):
+        n = (write or writer.write)(target, chain(first, frames), about)
+    if n and not target.exists():
+        told = f"says that it wrote {n} frame{'s' if n != 1 else ''}, and no file is there"
+        raise PluginError(f"{target}: {_who(offer)} {told}")
+    return n
+
+
+def _who(offer: Offer) -> str:
+    return f"writer {offer.name!r} of {offer.plugin.label}"
+
+
+@contextmanager
+def _named(offer: Offer, target: Path) -> Iterator[None]:
+    """Name another plugin's writer and the file in errors that are none of ours."""
+    from tactile_graph.engine.outcomes.notices import breaks
+
+    try:
+        yield
+    except (TactileGraphError, MemoryError):
+        raise
+    except Exception as error:  # a plugin's own code may raise anything
+        if offer.plugin.package == OWN or getattr(error, "filename", None) is not None:
+            raise
+        raise PluginError(f"{target}: {_who(offer)}: {breaks('write', error)}") from error
 
 
 class _Carried:

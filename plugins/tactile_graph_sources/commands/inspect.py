@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -85,7 +86,8 @@ def inspect(
     n_failed = 0
     for path in files:
         try:
-            found = look_into_all(path, told)
+            with _told_by_line(path):
+                found = look_into_all(path, told)
         except TactileGraphError as error:
             if len(files) == 1:
                 raise
@@ -98,6 +100,20 @@ def inspect(
                 say(f"picture: {picture}", err=as_json)
     if n_failed:
         click.get_current_context().exit(1)
+
+
+@contextmanager
+def _told_by_line(path: Path) -> Iterator[None]:
+    """Name the file, and the line of the plugin that reads it, in errors that are none of ours."""
+    from tactile_graph.engine.outcomes.notices import breaks
+    from tactile_graph.errors import DataError, TactileGraphError
+
+    try:
+        yield
+    except (TactileGraphError, OSError, MemoryError):
+        raise
+    except Exception as error:  # a plugin's own code may raise anything
+        raise DataError(str(path), breaks("reader", error)) from error
 
 
 def _show(

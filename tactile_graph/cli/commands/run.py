@@ -545,7 +545,9 @@ class _Run:
         stays = getattr(self.lines, "stays", "") if self.written else ""
         for name, *more in ((written, only, stays), (self.plot if drawn else None,)):
             if name not in (None, "-"):
-                told = "; ".join(filter(None, (f"wrote {name}", *more)))
+                lost = name == written and not Path(str(name)).exists()  # by a plugin's exporter
+                wrote = f"no file {name} is there: none was written" if lost else f"wrote {name}"
+                told = "; ".join(filter(None, (wrote, *more)))
                 say.print(told, style="dim", soft_wrap=True)
         for note in self.drawing.notes() if self.drawing is not None and drawn else ():
             say.print(note, style="dim", soft_wrap=True)

@@ -13,6 +13,7 @@ from tactile_graph.engine.calls.context import Context
 from tactile_graph.engine.calls.each import for_each, mapped, told_of_gaps
 from tactile_graph.engine.calls.gaps import Gaps
 from tactile_graph.engine.calls.isolated import Host, isolated_step
+from tactile_graph.engine.operations.memory import detached
 from tactile_graph.pipeline.graph import Node, NodeKind
 from tactile_graph.steps.signature import Kind
 
@@ -32,7 +33,18 @@ def make_call(node: Node, context: Context) -> Call:
     by_label = node.stateful and not node.is_sink
     call = _by_label(node, call, context) if by_label else call
     call = told_of_gaps(node, call)
-    return for_each(node, call, context) if node.each else call
+    if node.each:
+        return for_each(node, call, context)
+    return detached(call) if _holds(node) else call
+
+
+def _holds(node: Node) -> bool:
+    """Return whether a node's step may hold on to what it gives; its own process gives copies.
+
+    Those of the project's own that keep no state do not.
+    """
+    assert node.signature is not None
+    return (node.stateful or not node.signature.is_own) and node.isolation is None
 
 
 def _by_label(node: Node, first: Call, context: Context) -> Call:

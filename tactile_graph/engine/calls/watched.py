@@ -22,6 +22,7 @@ from tactile_graph.errors import PluginError
 
 Call = Callable[..., Any]
 Array = NDArray[Any]
+AGAIN = "writes into what it gave before, which others read: give a copy"
 
 
 def arrays_in(value: Any) -> Iterator[Array]:
@@ -161,15 +162,19 @@ def watched(call: Call, what: str, ports: Sequence[str] = (), place: str = "") -
     Raises
     ------
     PluginError
-        From the call that wrote, or the one after; what it wrote into is as it was by then.
+        From the call that wrote, or the one after; what it wrote into is as it was by then. Where
+        it gave that before, it may be its state: every later call raises, too.
     """
     before: Kept | None = None
+    undone = False
 
     def wrong(told: str) -> PluginError:
         return raised_there(PluginError(told), place) if place else PluginError(told)
 
     def watching(*args: Any, **kwargs: Any) -> Any:
-        nonlocal before
+        nonlocal before, undone
+        if undone:
+            raise wrong(f"{what} {AGAIN}")
         named = [*ports, *(f"input {i}" for i in range(len(ports) + 1, len(args) + 1))]
         given = {**dict(zip(named, args, strict=False)), **kwargs}
         kept = Kept(given)
@@ -180,8 +185,8 @@ def watched(call: Call, what: str, ports: Sequence[str] = (), place: str = "") -
             told = f"{what} writes into {names}, which others read: change a copy"
             raise wrong(told)
         if before is not None and before.changed():
-            before = None
-            raise wrong(f"{what} writes into what it gave before, which others read: give a copy")
+            undone = True
+            raise wrong(f"{what} {AGAIN}")
         of_result = Kept.of_answer("result", result)
         # What lies in its input may rightly change: a source may fill the same array anew.
         before = None if of_result.within(given) else of_result

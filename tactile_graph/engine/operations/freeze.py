@@ -1,8 +1,9 @@
 """Freeze what steps return: arrays become read-only, lists tuples, mappings the result's own.
 
-A list within a record stays a list, as the record declares it, but is the result's own.
+A list within a record stays a list, as the record declares it, but is the result's own, and so is
+a record whose fields can be set.
 
-No array is copied.
+An array is copied only where it lies in one that its step may go on writing into.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
+from tactile_graph.engine.operations.memory import OWN, own_array
 from tactile_graph.wires.image import Image, Mask
 from tactile_graph.wires.points import Points
 from tactile_graph.wires.shapes import Circle, Ellipse, Polygon, Rectangle
@@ -24,13 +26,15 @@ IMMUTABLE = frozenset(
 a buffer that its source fills anew."""
 
 FROZEN: set[type] = {*IMMUTABLE, Image}
-"""Types that need no second look: frozen by construction, or records of numbers met before."""
+"""Types that need no second look: frozen by construction, or records of numbers met before. Of a
+step that may hold on to what a wire's arrays lie in, `detached` looks at them."""
 
 
 def freeze(value: Any) -> Any:
     """Return the value, arrays in it read-only, lists as tuples, dicts and sets copied.
 
-    A record is itself where all its fields are, else a copy: its step may go on with its own.
+    A frozen record is itself where all its fields are; else, and where its fields can be set, it is
+    a copy: its step may go on with its own.
 
     Raises
     ------
@@ -49,7 +53,7 @@ def freeze(value: Any) -> Any:
 def _frozen(value: Any, known: Known, inside: bool = False) -> Any:
     kind = value.__class__
     if kind in FROZEN or value is None:
-        return value
+        return OWN[kind](value) if kind in OWN else value
     names = _FIELDS.get(kind)
     if names is None:
         names = _FIELDS[kind] = _fields(kind)
@@ -64,13 +68,18 @@ def _frozen(value: Any, known: Known, inside: bool = False) -> Any:
         kind = field.__class__
         if kind is np.ndarray:
             field.setflags(False)  # by keyword it takes twice as long
-        elif kind not in FROZEN:
+            if field.base is None:
+                continue
+            own = own_array(field)
+        elif kind not in FROZEN or kind in OWN:
             own = _frozen(field, known, True)
-            if own is not field:
-                changed = changed or {}
-                changed[name] = own
-    if changed:
-        made = _with(value, changed)
+        else:
+            continue
+        if own is not field:
+            changed = changed or {}
+            changed[name] = own
+    if changed or value.__class__ in _OPEN:
+        made = _with(value, changed or {})
         known[id(value)] = value, made  # the record too: or another could have its id
         return made
     return value if names else _freeze_container(value, known, inside)
@@ -112,10 +121,14 @@ Known = dict[int, tuple[Any, Any]]
 """Records and their copies, by the `id` of the record: one that is named twice stays one."""
 _FIELDS: dict[type, tuple[str, ...]] = {}
 """The fields of each record type met so far."""
+_OPEN: set[type] = set()
+"""Those of them whose fields can be set."""
 
 
 def _fields(kind: type) -> tuple[str, ...]:
     if dataclasses.is_dataclass(kind):
+        if not kind.__dataclass_params__.frozen:  # type: ignore[attr-defined]
+            _OPEN.add(kind)
         return tuple(f.name for f in dataclasses.fields(kind))
     return ()
 
@@ -134,7 +147,8 @@ def _only_numbers(kind: type) -> bool:
 def _freeze_container(value: Any, known: Known, inside: bool) -> Any:
     if isinstance(value, np.ndarray):
         value.setflags(False)  # type: ignore[call-arg]
-    elif isinstance(value, tuple):
+        return own_array(value)
+    if isinstance(value, tuple):
         items = [_frozen(v, known, inside) for v in value]
         if any(a is not b for a, b in zip(items, value, strict=True)):
             return type(value)(*items) if hasattr(value, "_fields") else tuple(items)

@@ -271,6 +271,9 @@ def raised_at(error: BaseException) -> str:
     if (told := getattr(error, _THERE, None)) is not None:
         return str(told)
     passed = list[tuple[str, int, str]]()
+    cause = error.__cause__
+    if isinstance(error, RuntimeError) and isinstance(cause, StopIteration):
+        error = cause  # in a generator Python makes the one of the other, behind its lines
     traceback = error.__traceback__
     while traceback is not None:
         code = traceback.tb_frame.f_code

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -34,9 +35,16 @@ def named_by_settings(graph: Graph) -> Iterator[Named]:
 
 
 def paths_in(value: Any) -> Iterator[Path]:
-    """Yield every text of a value, of lists and mappings in it too, as a path."""
+    """Yield every text of a value, of lists, sets, mappings and records in it too, as a path."""
+    kind = type(value)
     if isinstance(value, Mapping):
         value = list(value.values())
+    elif dataclasses.is_dataclass(kind):
+        value = [getattr(value, f.name, None) for f in dataclasses.fields(kind)]
+    elif hasattr(kind, "model_fields"):  # of pydantic
+        value = [*vars(value).values(), getattr(value, "__pydantic_extra__", None)]
+    elif isinstance(value, Set):
+        value = sorted(value, key=str)
     if isinstance(value, list | tuple):
         for part in value:
             yield from paths_in(part)

@@ -47,3 +47,18 @@ def test_a_pipeline_loads_without_a_current_folder(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(os, "getcwd", gone)
     monkeypatch.setattr(Path, "cwd", gone)
     assert load_graph("circle-1").name == "circle-1"
+
+
+@pytest.mark.slow
+def test_a_thread_that_goes_on_is_named_before_it_is_waited_for() -> None:
+    code = (
+        "import sys, threading, time\n"
+        "from tactile_graph.cli import app, entry\n"
+        "def work(): time.sleep(1.0)\n"
+        "app.cli.main = lambda: threading.Thread(target=work, name='pump').start()\n"
+        "entry.WAIT_S = 0.1\n"
+        "entry.main()\n"
+    )
+    got = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert got.returncode == 0
+    assert got.stderr == "waiting for threads that go on: pump; Ctrl-C ends them\n"

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
 
-from tactile_graph import Frame, loads
+from helpers_graphs import registry
+from tactile_graph import Degenerate, Frame, Image, Skip, loads
 from tactile_graph.many.division import Division, Settling, division_of
 from tactile_graph.many.feed import ranges_of
+from tactile_graph.many.portion import Portion
+from tactile_graph.many.reading import Reader
 from tactile_graph.steps.ranges import Ranges
 
 PLAIN = """
@@ -88,3 +92,36 @@ def test_state_is_settled_when_a_step_ran_as_often_as_it_remembers() -> None:
 def test_who_remembers_nothing_is_settled_at_once(n: int) -> None:
     assert Settling(dict.fromkeys("ab", 0)).done
     assert Settling({}).done
+
+
+class Lately:
+    """The mean of the last three peaks that it answered for."""
+
+    remembers = 3
+
+    def __init__(self) -> None:
+        self.peaks: deque[float] = deque(maxlen=3)
+
+    def __call__(self, image: Image) -> float:
+        if image.peak < 1.0:
+            raise Skip("nothing lies there")
+        if image.peak > 8.0:
+            raise Degenerate("too much lies there")
+        self.peaks.append(image.peak)
+        return sum(self.peaks) / len(self.peaks)
+
+
+@pytest.mark.parametrize("between", [0.5, 9.0], ids=["skipped", "failed"])
+def test_frames_without_an_answer_are_not_among_those_remembered(between: float) -> None:
+    text = "pipeline: p\nnodes:\n  lately: {step: lately, in: frame}\noutputs: [lately]\n"
+    pipeline = loads(text, "p.yaml", registry({"lately": Lately}))
+    peaks = [2.0, 3.0, 4.0, 5.0, *[between] * 6, 6.0]
+
+    def frames(low: int, high: int) -> Iterator[Frame]:
+        return (Frame.of(np.full((2, 2), peak), index=i) for i, peak in enumerate(peaks[low:high]))
+
+    *_, alone = pipeline.results(frames(0, len(peaks)), pipeline.runner())
+    reader = Reader(Ranges((len(peaks),), frames), {"lately": 3})
+    run = reader.settled(Portion(len(peaks) - 1, len(peaks)), pipeline.runner)
+    (last,) = frames(len(peaks) - 1, len(peaks))
+    assert run(last)["lately"] == alone["lately"] == 5.0

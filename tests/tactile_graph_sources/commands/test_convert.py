@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from helpers_cli import plugin
-from tactile_graph import Frame
+from tactile_graph import Frame, hookimpl
 from tactile_graph.cli import cli
 from tactile_graph.cli.interrupt import Ended
 from tactile_graph.errors import UsageError
@@ -25,6 +28,7 @@ from tactile_graph_sources.inspection.look import look_into
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import PITCH_UNTOLD
 from tactile_graph_sources.recording import recording
+from tactile_graph_sources.writers.recording_writer import RecordingWriter
 from tactile_graph_sources.writers.write_npz import write_npz
 from tactile_graph_sources.writers.write_store import StoreWriter
 
@@ -479,3 +483,41 @@ def test_an_assumed_pitch_stays_one(tmp_path: Path, ending: str) -> None:
     run(tmp_path / f"twice{ending}", told, "--pitch-cm", "1")
     assert not look_into(told, {}).pitch_assumed
     assert look_into(tmp_path / f"twice{ending}", {}).pitch_assumed
+
+
+def broken_writer(path: Path, frames: Iterator[Frame], about: str) -> int:
+    next(frames)
+    path.write_text("half")
+    raise ValueError("disk is odd")
+
+
+def idle_writer(path: Path, frames: Iterator[Frame], about: str) -> int:
+    return len([*frames])
+
+
+@pytest.mark.parametrize(
+    ("write", "told"),
+    [
+        (broken_writer, ": its write breaks: ValueError: disk is odd ("),
+        (idle_writer, " says that it wrote 6 frames, and no file is there"),
+    ],
+)
+def test_what_is_wrong_with_a_plugins_writer_names_it(
+    tmp_path: Path, made: list[Frame], monkeypatch: pytest.MonkeyPatch, write: Any, told: str
+) -> None:
+    @hookimpl
+    def tactile_graph_recording_writers() -> dict[str, str]:
+        return {".odd": "odd_writers:WRITER"}
+
+    mine: Any = ModuleType("odd_writers")
+    mine.WRITER = RecordingWriter(write)
+    mine.tactile_graph_recording_writers = tactile_graph_recording_writers
+    monkeypatch.setitem(sys.modules, "odd_writers", mine)
+    found = Registry([*registry.found_plugins(), ("mine", "mine-pads", "1", lambda: mine)])
+    monkeypatch.setattr("tactile_graph_sources.commands.convert.installed", lambda: found)
+    result = CliRunner().invoke(
+        cli, ["convert", *map(str, (tmp_path / "a.npz", tmp_path / "b.odd"))]
+    )
+    assert result.exit_code == 2
+    assert f"b.odd: writer '.odd' of plugin 'mine' (package mine-pads){told}" in result.output
+    assert "b.odd: 6 frames" not in result.output

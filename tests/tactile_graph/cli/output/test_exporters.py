@@ -92,6 +92,13 @@ def test_an_error_names_exporter_and_plugin_and_leaves_no_note_of_nothing(
     assert not Path("q.md.gz.meta.json").exists() or method == "write"
 
 
+def test_that_one_wrote_no_file_is_said(exporters: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(import_module("tg_words").Words, "close", lambda self: None)
+    got = call("run", "p.yaml", "-o", "q.md.gz")
+    assert "no file q.md.gz is there: none was written" in got.stderr
+    assert "wrote q.md.gz" not in got.stderr
+
+
 def test_what_an_exporter_refuses_in_clicks_own_words_is_shown_so(
     exporters: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

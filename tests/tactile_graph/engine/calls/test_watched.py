@@ -73,6 +73,9 @@ class Found:
 class Number:
     n: int = 0
 
+    def __copy__(self) -> Number:
+        raise TypeError("there is one of it")
+
 
 @pytest.mark.parametrize(
     "write",
@@ -120,13 +123,27 @@ def test_a_step_that_writes_into_what_it_gave_before_fails() -> None:
     def smoothed(image: Image) -> Image:
         mean.setflags(write=True)
         mean[:] = 0.5 * (mean + image.values)
-        return image.with_values(mean.view())
+        return image.with_values(mean)
 
     step = watched(smoothed, "step smoothed of mine")
     first = step(image())
     with pytest.raises(PluginError, match="step smoothed of mine writes into what it gave before"):
         step(image(3.0))
     assert (first.values == 0.5).all()
+
+
+def test_after_that_it_gives_nothing_more_for_its_state_is_not_what_it_made_of_it() -> None:
+    number = Number()
+
+    def counted() -> Number:
+        number.n += 1
+        return number
+
+    step = watched(counted, "step counted")
+    assert step().n == 1
+    for _ in range(3):
+        with pytest.raises(PluginError, match="step counted writes into what it gave before"):
+            step()
 
 
 def test_a_step_that_hands_on_what_it_got_may_get_the_same_array_filled_anew() -> None:

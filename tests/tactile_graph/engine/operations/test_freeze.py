@@ -123,9 +123,24 @@ def test_a_record_that_lets_nobody_copy_it_stays_itself() -> None:
     assert freeze(sealed) is sealed
 
 
+@dataclass(frozen=True)
+class Shut:
+    array: Any
+    inner: Any = None
+
+
 def test_a_record_without_a_list_is_not_copied() -> None:
-    record = Record(array(), (1, Record(array())))
+    record = Shut(array(), (1, Shut(array())))
     assert freeze(record) is record
+
+
+@pytest.mark.parametrize("wrap", [lambda it: it, lambda it: Shut(0, it), lambda it: (it,)])
+def test_a_record_whose_fields_can_be_set_is_the_results_own(wrap: Any) -> None:
+    record = Record(1.0)
+    frozen = freeze(wrap(record))
+    got = getattr(frozen, "inner", None) or (frozen[0] if isinstance(frozen, tuple) else frozen)
+    record.array = 2.0
+    assert got.array == 1.0
 
 
 def answers(step: Any, n: int = 3) -> list[Any]:
@@ -145,6 +160,24 @@ class History:
 
 def test_a_state_that_is_handed_out_in_a_record_changes_no_earlier_result() -> None:
     assert [len(got.level) for got in answers(History)] == [1, 2, 3]
+
+
+@dataclass
+class Count:
+    n: int = 0
+
+
+class Counter:
+    def __init__(self) -> None:
+        self.count = Count()
+
+    def __call__(self, image: Image) -> Count:
+        self.count.n += 1
+        return self.count
+
+
+def test_a_record_that_a_step_goes_on_filling_changes_no_earlier_result() -> None:
+    assert [got.n for got in answers(Counter)] == [1, 2, 3]
 
 
 def selfish(image: Image) -> Record:
