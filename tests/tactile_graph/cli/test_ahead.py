@@ -46,7 +46,7 @@ def test_it_ends_with_the_first_frame_that_needs_nothing(
             frames.append(result.frame.index)
             yield result
 
-    monkeypatch.setattr(type(pipeline), "stream", lambda _: counted())
+    monkeypatch.setattr(type(pipeline), "stream", lambda _, **kept: counted())
     ahead.compile_ahead([pipeline])
     assert (made, frames) == ([], [0])
 
