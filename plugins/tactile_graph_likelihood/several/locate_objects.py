@@ -39,6 +39,7 @@ from tactile_graph_likelihood.geometry.outline_prior import LARGEST, SMALLEST
 from tactile_graph_likelihood.geometry.outlines import Values
 from tactile_graph_likelihood.geometry.pieces import components
 from tactile_graph_likelihood.several.enclosed import enclose
+from tactile_graph_likelihood.several.filled_hull import fill_their_hull
 from tactile_graph_likelihood.several.fit_footprints import Footprints, Kind, SeveralSettings
 from tactile_graph_likelihood.several.gap_of_all import sized
 from tactile_graph_likelihood.several.joint.joint_posterior import JointProblem
@@ -175,7 +176,8 @@ class LocateObjects:
             and not overlooked(problem, found)
             and not vague
             and all(shape.fits for shape in shapes)
-            and not enclose(found),
+            and not enclose(found)
+            and not fill_their_hull(found),
         )
 
     def searched(self, readings: Readings) -> tuple[JointProblem, OnPad]:
