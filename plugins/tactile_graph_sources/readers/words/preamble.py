@@ -36,8 +36,7 @@ _WORDS = {
               "größe", "matriz", "matrice", "taille", "array"},
     "pitch": frozenset(PITCH_WORDS),
     "unit": UNIT_WORDS,
-    "scale": {"scale factor", "scaling factor", "scale", "scaling", "skalierung",
-              "skalierungsfaktor"},
+    "scale": {"scale factor", "scaling factor", "multiplier", "skalierungsfaktor"},
     "quantity": {"quantity"},
     "rate": {"rate", "frame rate", "sampling rate", "sample rate", "frequency", "fps", "fs",
              "sampling frequency", "scanning rate", "sample rate hz", "rate hz", "abtastrate",
@@ -143,7 +142,7 @@ def _unread(said: Described, meaning: str, found: re.Match[str]) -> tuple[str, .
     number = float(first[0].replace(",", ".")) if first else 0.0
     if meaning == "rate" and number and said.frame_s is None:
         return (f"{_shown(found)!r} left out, as it is no rate that is understood (such as 50 Hz)",)
-    if meaning == "scale" and number not in (0.0, 1.0):
+    if meaning == "scale" and number not in (0.0, 1.0) and _NUMBER.fullmatch(found[4]):
         remedy = f"the step gain with elements: [[{1.0 / number:g}]] does it"
         return (f"{_shown(found)!r} not applied to the values; {remedy}",)
     return ()

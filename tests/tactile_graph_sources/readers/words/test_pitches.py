@@ -106,3 +106,12 @@ def test_a_factor_beside_the_values_is_told_as_not_applied() -> None:
         "it",
     )
     assert described(["Scale factor: 1.0", "Scale: linear"]).notes == ()
+    assert len(described(["Multiplier: 0.1"]).notes) == 1
+
+
+@pytest.mark.parametrize(
+    "line", ["Scale: 100 %", "Scale: 12 bit", "Scale: 10 kPa", "Scale: 2x", "Scale: 0.5",
+             "Scale: 3.5 kg load cell", "Scale factor: 100 %"]
+)  # fmt: skip
+def test_a_scale_that_is_no_bare_factor_gets_no_word(line: str) -> None:
+    assert described([line]).notes == ()
