@@ -14,8 +14,8 @@ from tactile_graph.quantities import is_quantity
 from tactile_graph_sources.readers.words.pitches import (
     PITCH_WORDS,
     SaidPitch,
-    lengths_cm,
     pitch_of,
+    said_pitch,
 )
 from tactile_graph_sources.readers.words.rates import frame_seconds, of_something_else
 from tactile_graph_sources.readers.words.units import (
@@ -122,13 +122,13 @@ def described(lines: Iterable[str]) -> Described:
         key, _, unit = found[1].strip().lower().replace("_", " ").partition("[")
         key, _, other = key.partition("(")
         bare, length = without_length_unit(key.strip())
-        meaning, unit = _MEANING.get(bare), (unit or other).strip(" ])") or length
-        value = found[4]
+        meaning, value = _MEANING.get(bare), found[4]
         if meaning == "pitch":
-            in_fields = found[2] == "," and not found[3]
-            lengths = lengths_cm(value[:_LONGEST], unit, in_fields)
-            pitches.append(SaidPitch(_shown(found), bare, lengths))
+            beside, in_fields = f"{other} {unit} {length}", found[2] == "," and not found[3]
+            line_said = said_pitch(_shown(found), bare, value[:_LONGEST], beside, in_fields)
+            pitches += [] if line_said is None else [line_said]
         elif meaning is not None:
+            unit = (unit or other).strip(" ])") or length
             said = _take(said, meaning, value, unit)
             said = replace(said, told=(*said.told, *_unread(said, meaning, found, unit)))
     pitch, notes = pitch_of(pitches)
