@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from itertools import chain, islice
@@ -34,10 +35,14 @@ class Pitch(Finite):
         super().__init__(min=0, min_open=True)
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
-        """Return the number, or both."""
-        x, comma, y = str(value).partition(",")
+        """Return the number, or both; a comma between whole ones may be a decimal one."""
+        if re.fullmatch(r"\d+,\d+", text := str(value).strip()):
+            point, both = text.replace(",", "."), text.replace(",", "x")
+            ways = f"{point}, or {both} for two" if float(both.partition("x")[0]) else point
+            self.fail(f"{text!r} may have a decimal comma: write {ways}", param, ctx)
+        x, *y = re.split(r"\s*[,x×]\s*", text, maxsplit=1)
         one = super().convert(x, param, ctx)
-        return (one, super().convert(y, param, ctx)) if comma else one
+        return (one, super().convert(y[0], param, ctx)) if y else one
 
 
 @click.command()
@@ -73,7 +78,7 @@ class Pitch(Finite):
 @click.option("--rows", type=click.IntRange(min=1), help="Rows, where the file cannot tell.")
 @click.option("--columns", type=click.IntRange(min=1), help="Columns, likewise.")
 @click.option("--pitch-cm", metavar="FLOAT[,FLOAT]", type=Pitch(),
-              help="Pitch, likewise; 0.8,1.2 of columns and of rows.")  # fmt: skip
+              help="Pitch, likewise; 0.8,1.2 or 1x2 of columns and of rows.")  # fmt: skip
 @click.option("--quantity", help="What the values mean, likewise.")
 @click.option(
     "--truth",

@@ -102,10 +102,17 @@ def test_a_table_and_back_with_what_it_cannot_say_told(tmp_path: Path, made: lis
         assert a.image.pitch_cm == b.image.pitch_cm
 
 
-def test_a_pitch_is_told_of_both_sides_or_of_each(tmp_path: Path, made: list[Frame]) -> None:
-    run(tmp_path / "a.npz", tmp_path / "b.npz", "--pitch-cm", "0.8,1.2")
+@pytest.mark.parametrize(
+    ("pitch", "x", "y"),
+    [("0.8,1.2", 0.8, 1.2), ("1.0,27", 1.0, 27.0), ("1x27", 1.0, 27.0), ("0.8 x 1.2", 0.8, 1.2),
+     ("1.27", 1.27, 1.27)],
+)  # fmt: skip
+def test_a_pitch_is_told_of_both_sides_or_of_each(
+    tmp_path: Path, made: list[Frame], pitch: str, x: float, y: float
+) -> None:
+    run(tmp_path / "a.npz", tmp_path / "b.npz", "--pitch-cm", pitch)
     first = next(iter(recording(path=tmp_path / "b.npz", report=Report())))
-    assert first.image.pitch_cm == (0.8, 1.2)
+    assert first.image.pitch_cm == (x, y)
 
 
 @pytest.mark.parametrize(
@@ -115,6 +122,8 @@ def test_a_pitch_is_told_of_both_sides_or_of_each(tmp_path: Path, made: list[Fra
         ("1,2,3", "'2,3' is not a valid float"),
         ("0.8,0", "0.0 is not in the range x>0"),
         ("0.8,nan", "must be a finite number in the range x>0, got nan"),
+        ("1,27", "'1,27' may have a decimal comma: write 1.27, or 1x27 for two"),
+        ("0,8", "'0,8' may have a decimal comma: write 0.8\n"),
     ],
 )
 def test_a_pitch_of_other_than_one_or_two_lengths_is_refused(

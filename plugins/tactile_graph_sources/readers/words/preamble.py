@@ -14,10 +14,10 @@ from tactile_graph.quantities import is_quantity
 from tactile_graph_sources.readers.words.pitches import (
     PITCH_WORDS,
     SaidPitch,
-    lengths_cm,
     pitch_of,
+    said_pitch,
 )
-from tactile_graph_sources.readers.words.rates import frame_seconds
+from tactile_graph_sources.readers.words.rates import frame_seconds, of_something_else
 from tactile_graph_sources.readers.words.units import (
     UNIT_WORDS,
     taken_as_they_are,
@@ -36,15 +36,16 @@ _WORDS = {
               "größe", "matriz", "matrice", "taille", "array"},
     "pitch": frozenset(PITCH_WORDS),
     "unit": UNIT_WORDS,
-    "scale": {"scale factor", "scaling factor", "scale", "scaling", "skalierung",
-              "skalierungsfaktor"},
+    "scale": {"scale factor", "scaling factor", "multiplier", "skalierungsfaktor"},
     "quantity": {"quantity"},
-    "rate": {"rate", "frame rate", "sampling rate", "sample rate", "frequency", "fps", "fs",
-             "sampling frequency", "scanning rate", "sample rate hz", "rate hz", "abtastrate",
-             "frequenz", "fréquence", "frecuencia", "frequenza", "cadence"},
+    "rate": {"frame rate", "sampling rate", "sample rate", "fps", "fs", "sampling frequency",
+             "scanning rate", "sample rate hz", "rate hz", "abtastrate"},
+    "any rate": {"rate", "frequency", "frequenz", "fréquence", "frecuencia", "frequenza",
+                 "cadence"},
 }  # fmt: skip
 _MEANING = {word: key for key, words in _WORDS.items() for word in words}
 _SHAPE = re.compile(r"\D*?(\d{1,5})\s*(?:x|×|\*|,|by|mal)\s*(\d{1,5})\b.*", re.IGNORECASE)
+_RATES = ("rate", "any rate")
 _LONGEST = 100
 """Of what is said of pitch and rate: longer texts are something else."""
 _NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?")
@@ -121,14 +122,15 @@ def described(lines: Iterable[str]) -> Described:
         key, _, unit = found[1].strip().lower().replace("_", " ").partition("[")
         key, _, other = key.partition("(")
         bare, length = without_length_unit(key.strip())
-        meaning, unit = _MEANING.get(bare), (unit or other).strip(" ])") or length
+        meaning, value = _MEANING.get(bare), found[4]
         if meaning == "pitch":
-            in_fields = found[2] == "," and not found[3]
-            lengths = lengths_cm(found[4][:_LONGEST], unit, in_fields)
-            pitches.append(SaidPitch(_shown(found), bare, lengths))
+            beside, in_fields = f"{other} {unit} {length}", found[2] == "," and not found[3]
+            line_said = said_pitch(_shown(found), bare, value[:_LONGEST], beside, in_fields)
+            pitches += [] if line_said is None else [line_said]
         elif meaning is not None:
-            said = _take(said, meaning, found[4], unit)
-            said = replace(said, told=(*said.told, *_unread(said, meaning, found)))
+            unit = (unit or other).strip(" ])") or length
+            said = _take(said, meaning, value, unit)
+            said = replace(said, told=(*said.told, *_unread(said, meaning, found, unit)))
     pitch, notes = pitch_of(pitches)
     return replace(said, pitch_cm=pitch, told=(*said.told, *notes))
 
@@ -137,13 +139,15 @@ def _shown(found: re.Match[str]) -> str:
     return f"{found[1].strip()}: {found[4][:_LONGEST]}"
 
 
-def _unread(said: Described, meaning: str, found: re.Match[str]) -> tuple[str, ...]:
+def _unread(said: Described, meaning: str, found: re.Match[str], unit: str) -> tuple[str, ...]:
     """Return what is told of a line that says something which is not followed."""
     first = _NUMBER.match(found[4])
     number = float(first[0].replace(",", ".")) if first else 0.0
-    if meaning == "rate" and number and said.frame_s is None:
+    if meaning in _RATES and number and said.frame_s is None:
+        if meaning == "any rate" and of_something_else(found[4][:_LONGEST], unit):
+            return ()
         return (f"{_shown(found)!r} left out, as it is no rate that is understood (such as 50 Hz)",)
-    if meaning == "scale" and number not in (0.0, 1.0):
+    if meaning == "scale" and number not in (0.0, 1.0) and _NUMBER.fullmatch(found[4]):
         remedy = f"the step gain with elements: [[{1.0 / number:g}]] does it"
         return (f"{_shown(found)!r} not applied to the values; {remedy}",)
     return ()
@@ -165,5 +169,7 @@ def _take(said: Described, meaning: str, value: str, unit: str) -> Described:
         if quantity in ("raw", said.quantity):  # a unit of it has told its factor, too
             return said
         return replace(said, quantity=quantity, factor=factor)
-    frame_s = frame_seconds(value[:_LONGEST], unit) if meaning == "rate" else None
+    if meaning not in _RATES:
+        return said
+    frame_s = frame_seconds(value[:_LONGEST], unit, of_frames=meaning == "rate")
     return replace(said, frame_s=frame_s) if frame_s and frame_s > 1e-6 else said

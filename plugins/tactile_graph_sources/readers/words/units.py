@@ -35,7 +35,7 @@ _KILOPASCAL = {
     "pascal": 1e-3,
     "kilopascal": 1.0,
 }
-_SQUARED = re.compile(r"²|\\xb2|\*\*2|\^2")
+SQUARED = re.compile(r"²|\\xb2|\*\*2|\^2")
 """How files raise to the second power; a Latin-1 sign is not decoded in a text of UTF-8."""
 _VALUES = {
     "v": ("volt", 1.0), "volt": ("volt", 1.0), "volts": ("volt", 1.0), "mv": ("volt", 1e-3),
@@ -71,7 +71,7 @@ def pressure_unit(text: str) -> tuple[str, float]:
     (str, float)
         ``("kilopascal", factor)`` for pressures, ``("raw", 1.0)`` for anything else.
     """
-    name = _SQUARED.sub("2", text.strip().strip('"').lower().replace(" ", ""))
+    name = SQUARED.sub("2", text.strip().strip('"').lower().replace(" ", ""))
     name = name.removesuffix("s") if name not in _KILOPASCAL else name
     factor = _KILOPASCAL.get(name)
     return ("raw", 1.0) if factor is None else ("kilopascal", factor)
