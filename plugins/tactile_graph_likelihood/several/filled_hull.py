@@ -1,4 +1,4 @@
-"""Outlines side by side that fill their convex hull: those of one object of another shape, maybe."""
+"""Outlines side by side that fill their convex hull: one object of another shape, maybe."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ import numpy as np
 from tactile_graph_likelihood.geometry.outlines import unknowns
 from tactile_graph_likelihood.several.joint.scene import Configuration, laid
 from tactile_graph_likelihood.several.pad import Found, OnPad
-from tactile_graph_likelihood.single.density.element_terms import ON, SIGMA, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import ON, UNKNOWN
 
 TELLING = 24
 """Touched elements from which on two discs side by side leave more than voids between them."""
 
 NOTCH, HARDLY = 0.02, 0.5
-"""Of a hull's elements, the bare ones that are hardly covered up to which there is no notch, and the
-share that says so; two equal discs leave an eighth of theirs."""
+"""Of a hull's elements, the bare ones that are hardly covered up to which there is no notch, and
+the share that says so; two equal discs leave an eighth of theirs."""
 
-ALIKE = 3.0
-"""Deviations up to which the loads of outlines of so many elements may be those of one object."""
+ALIKE = math.log(2.0)
+"""Logarithms up to which outlines' loads may be those of one object: one that lies over its edge
+takes less."""
 
 
 def fill_their_hull(found: OnPad) -> bool:
@@ -35,8 +36,7 @@ def _fills(part: Found) -> bool:
 
     problem = part.scene.problem
     on = problem.states == ON
-    touched = int(np.count_nonzero(on))
-    if touched < TELLING or _spread(part.outlines) > ALIKE * _deviation(part, touched):
+    if np.count_nonzero(on) < TELLING or _spread(part.outlines) > ALIKE:
         return False
     try:
         sides = ConvexHull(np.argwhere(on)).equations
@@ -53,8 +53,3 @@ def _spread(found: Configuration) -> float:
     kinds = zip(found.kinds.tolist(), found.corners.tolist(), strict=True)
     loads = [p[unknowns.call(*kind)] for kind, p in zip(kinds, found.points, strict=True)]
     return float(max(loads) - min(loads))
-
-
-def _deviation(part: Found, touched: int) -> float:
-    """Return that of the difference of two outlines' loads, were they one's."""
-    return float(part.scene.problem.noise[SIGMA]) * math.sqrt(2.0 * part.outlines.count / touched)
