@@ -14,9 +14,13 @@ from urllib.request import url2pathname
 
 from tactile_graph.files import sha256_of
 
-MADE = (".pyc", ".pyo", ".pth", ".nbi", ".nbc")
-"""Endings of what is made of code, or says where it lies."""
+MADE = (".pyc", ".pyo", ".nbi", ".nbc")
+"""Endings of what is made of code."""
+PATHS = ".pth"
+"""Ending of a file among the installed packages that says where others lie."""
 CACHES = "__pycache__"
+BESIDE = {"tests", "test", "docs", "examples", "benchmarks", "build", "dist"}
+"""Folders of a project that may hold packages, which are not installed."""
 
 
 def digests_of(package: str, modules: Iterable[str]) -> list[tuple[str, str]]:
@@ -44,6 +48,7 @@ def digests_of(package: str, modules: Iterable[str]) -> list[tuple[str, str]]:
         root = _edited(dist)
         names |= {*(dist.read_text("top_level.txt") or "").split()}
         names |= {e.module for e in dist.entry_points if e.group == "tactile_graph"}
+        names |= {*_on_paths(dist, root)}
     known = {path.resolve() for path in files}
     for name in sorted(names):
         for place in _places(name, root):
@@ -55,8 +60,8 @@ def digests_of(package: str, modules: Iterable[str]) -> list[tuple[str, str]]:
 
 def _counts(name: str) -> bool:
     """Return whether a file that was installed is code, or data beside it."""
-    head, *_ = name.split("/")
-    about = head == ".." or head.endswith((".dist-info", ".egg-info"))
+    head, *below = name.split("/")
+    about = head == ".." or head.endswith((".dist-info", ".egg-info", *(() if below else (PATHS,))))
     return not (about or head.startswith("__editable__") or CACHES in name or name.endswith(MADE))
 
 
@@ -66,6 +71,16 @@ def _edited(dist: Distribution) -> Path | None:
     if not told.get("dir_info", {}).get("editable"):
         return None
     return Path(url2pathname(urlsplit(told["url"]).path)).resolve()
+
+
+def _on_paths(dist: Distribution, root: Path | None) -> Iterator[str]:
+    """Yield the packages in the folders that a distribution which is edited puts on the path."""
+    texts = [f.read_text() for f in dist.files or () if root is not None and f.suffix == PATHS]
+    for line in "\n".join(texts).splitlines():
+        folder = Path(line.strip())
+        if folder.is_dir() and root is not None and folder.resolve().is_relative_to(root):
+            found = {first.parent.name for first in folder.glob("*/__init__.py")}
+            yield from sorted(found - BESIDE)
 
 
 def _places(name: str, root: Path | None) -> Iterator[Path]:
@@ -101,7 +116,12 @@ def _within(place: Path) -> Iterator[tuple[Path, str]]:
     if place.is_file():
         yield place, place.name
         return
-    for folder, folders, files in os.walk(place):
+    been = set[str]()
+    for folder, folders, files in os.walk(place, followlinks=True):
+        if (real := os.path.realpath(folder)) in been:  # a link that leads back
+            folders.clear()
+            continue
+        been.add(real)
         folders[:] = [f for f in folders if f != CACHES and not f.startswith(".")]
         for path in (Path(folder, f) for f in files):
             if not path.name.startswith(".") and path.suffix not in MADE and path.is_file():

@@ -87,6 +87,28 @@ def test_data_and_machine_code_count_and_caches_do_not(
     assert changes(folder, name, "padsofmine") == counts
 
 
+def test_weights_in_a_package_count_and_so_does_what_a_link_in_it_leads_to(folder: Path) -> None:
+    install(folder, edited=True)
+    files = ("padsofmine/__init__.py", "padsofmine/model.pth", "weights/old.json")
+    write(folder, dict.fromkeys(files, "N = 1\n"))
+    (folder / "padsofmine" / "data").symlink_to(folder / "weights")
+    (folder / "padsofmine" / "back").symlink_to(folder / "padsofmine")
+    assert changes(folder, "padsofmine/model.pth", "padsofmine")
+    assert changes(folder, "weights/old.json", "padsofmine")
+
+
+def test_another_package_on_the_path_of_an_edited_one_counts(folder: Path) -> None:
+    install(folder, edited=True, record=("_mine_pads.pth",))
+    files = ("src/padsofmine/__init__.py", "src/helpofmine/__init__.py", "src/tests/__init__.py")
+    write(folder, dict.fromkeys(files, "N = 1\n") | {"_mine_pads.pth": f"{folder / 'src'}\n"})
+    sys.path.insert(0, str(folder / "src"))
+    try:
+        assert changes(folder, "src/helpofmine/__init__.py", "padsofmine")
+        assert not changes(folder, "src/tests/__init__.py", "padsofmine")
+    finally:
+        sys.path.remove(str(folder / "src"))
+
+
 def test_what_is_written_beside_an_installed_package_later_does_not_count(folder: Path) -> None:
     install(folder, edited=False, record=("padsofmine/__init__.py",))
     write(folder, {"padsofmine/__init__.py": "N = 1\n"})

@@ -122,12 +122,13 @@ Known = dict[int, tuple[Any, Any]]
 _FIELDS: dict[type, tuple[str, ...]] = {}
 """The fields of each record type met so far."""
 _OPEN: set[type] = set()
-"""Those of them whose fields can be set."""
+"""Those of them whose fields can be set, and which hold nothing that ends with them."""
 
 
 def _fields(kind: type) -> tuple[str, ...]:
     if dataclasses.is_dataclass(kind):
-        if not kind.__dataclass_params__.frozen:  # type: ignore[attr-defined]
+        frozen = kind.__dataclass_params__.frozen  # type: ignore[attr-defined]
+        if not (frozen or hasattr(kind, "__del__")):  # a copy that ends would end what it holds
             _OPEN.add(kind)
         return tuple(f.name for f in dataclasses.fields(kind))
     return ()

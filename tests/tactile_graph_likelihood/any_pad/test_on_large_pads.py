@@ -119,3 +119,14 @@ def test_a_wide_outline_is_as_large_as_it_is_whatever_the_gap(sensing: slice) ->
     assert abs(np.mean(errors)) < 0.03 * PITCH_CM
     assert held >= 7
     assert fits >= 7
+
+
+def test_where_a_limit_holds_what_a_wide_outline_reads_its_size_says_that_the_gap_is_open() -> None:
+    locate, rng = LocateDisc(), np.random.default_rng(37)
+    for _ in range(2):
+        load_g, true = loaded(rng, Pad(100, slice(FINE), radii=(40.0, 46.0)))
+        most_g = float(np.quantile(load_g[load_g > 0.0], 0.5))
+        limited = np.minimum(load_g, most_g) + rng.normal(0.0, 0.003 * most_g, load_g.shape)
+        found = locate(Image(limited, (PITCH_CM,) * 2, quantity="gram"))
+        assert found.posterior.contains(true)
+        assert found.radius_std_cm > 0.1 * PITCH_CM

@@ -23,7 +23,7 @@ from tactile_graph_likelihood.any_pad.observation.shown import (
     told_of_elements,
 )
 from tactile_graph_likelihood.geometry.outlines import Values
-from tactile_graph_likelihood.single.density.element_terms import OFF, ON, UNDER, UNKNOWN
+from tactile_graph_likelihood.single.density.element_terms import OFF, ON, OVER, UNDER, UNKNOWN
 from tactile_graph_likelihood.single.readings import (
     MANY,
     Gap,
@@ -122,10 +122,9 @@ def observed(
     if not rise.above.size:
         raise Degenerate("the image has no element: no outline fits")
     found = _readings(image, pad, grid, rise, _known_loads(image, pad, rise, evened))
-    if found.is_wide and found.unheld is None:
-        found = uniform(found)
-    if found.is_wide:
-        return found._replace(gap=gap)
+    if found.is_wide:  # where a limit holds readings, the rim tells little of the gap
+        held = found.logs if (found.states == OVER).any() else None
+        return uniform(found)._replace(gap=gap, unheld=held)
     unsure_cm = UNSCALED_STD * float(grid[2]) if image.quantity in UNSCALED else 0.0
     return found._replace(gap=gap, length_std_cm=unsure_cm)
 

@@ -199,3 +199,17 @@ def test_a_record_that_holds_itself_fails_its_node_alone(n: int) -> None:
         assert got.origin == "a"
         assert got.reason.startswith("TypeError: what the step returned holds itself, or is nested")
         assert not got.where  # no line of code is to blame
+
+
+def test_a_record_that_ends_what_it_holds_is_not_copied() -> None:
+    @dataclass(eq=False)
+    class Handle:
+        n: int
+
+        def __del__(self) -> None:
+            ended.append(self.n)
+
+    ended: list[int] = []
+    handle = Handle(3)
+    assert freeze(handle) is handle
+    assert not ended
