@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.tables.breaks import LONGEST_SIGNATURE
 from tactile_graph_sources.readers.words.dialect import is_row
 

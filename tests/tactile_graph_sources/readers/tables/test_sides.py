@@ -10,7 +10,7 @@ import pytest
 from helpers_recordings import frames_of, write
 from tactile_graph.errors import DataError
 from tactile_graph_sources.readers import head
-from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 
 FEET = np.random.default_rng(0).uniform(50, 100, (2, 4, 6, 4)).round(1)
 NAMES = "Left", "Right"
