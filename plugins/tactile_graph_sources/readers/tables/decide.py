@@ -106,13 +106,11 @@ def _layout_of(
     of_blanks: tuple[str, ...] = ()
     if may_have_blank_rows(table, lines):
         table, of_blanks = _with_blank_rows(table, shape, lines, told, names)
-    table, question = as_wide_as_told(table, shape)
+    table, of_width = as_wide_as_told(table, shape)
     base = Layout("unclear", table.dialect, table.width, table.first_line, said=table.said)
-    base = replace(base, n_fields=table.n_fields if table.padded else 0)
+    base = replace(base, n_fields=table.n_fields if table.padded else 0, assumed=of_width)
     if table.positions is not None:
         base = _placed_apart(base, table.positions, told)
-    if question:
-        return replace(base, trouble=question)
     try:
         table, sensor = of_one_sensor(table, told)
     except NoneNamedError as error:
