@@ -165,6 +165,28 @@ def test_a_header_rules_over_cells_without_a_value(
     assert frames_of(path, **settings)[0][1].time_s == 0.01
 
 
+@pytest.mark.parametrize("spare", ["B1", "c64", "adc64", "T1", "c64,c65", "B1,B2", "note"])
+def test_an_empty_column_that_has_a_name_is_no_cell_by_it(spare: str, tmp_path: Path) -> None:
+    frames = np.random.default_rng(1).uniform(50, 100, (5, 8, 8)).round(1)
+    stem = "adc" if "adc" in spare else "c"
+    header = "time_s," + ",".join(f"{stem}{k}" for k in range(64)) + f",{spare}\n"
+    ends = "," * (spare.count(",") + 1) + "\n"
+    check(
+        write(tmp_path, a_line(frames, header).replace("\n", ends).replace(ends, "\n", 1)), frames
+    )
+
+
+@pytest.mark.parametrize("name", ["v{n}", "{letter}{j}"])
+def test_an_empty_last_column_is_a_cell_where_names_fill_a_grid_with_it(
+    name: str, tmp_path: Path
+) -> None:
+    frames = np.random.default_rng(1).uniform(50, 100, (5, 4, 4)).round(1)
+    frames[:, 3, 3] = np.nan
+    places = [(i, j) for i in range(4) for j in range(4)]
+    names = [name.format(n=4 * i + j, letter="ABCD"[i], j=j + 1) for i, j in places]
+    check(write(tmp_path, a_line(frames, f"time_s,{','.join(names)}\n")), frames)
+
+
 def test_an_empty_last_field_may_be_a_cell_or_a_separator(tmp_path: Path) -> None:
     frames = without([(5, 4)])
     path = write(tmp_path, a_line(frames, ""))
