@@ -120,7 +120,8 @@ def blank_rows(table: Table, padded: Table, told: Told) -> tuple[bool, tuple[str
             return False, ()  # a frame a line
         return _has_rows(padded, told.rows) and not _has_rows(table, told.rows), ()
     sizes, fewer, usual = padded.groups[0], _usual(table), _usual(padded)
-    taken = "lines of separators alone taken for"
+    lone = any(padded.is_padded(x) and not is_blank(x) for x in padded.row_lines)
+    taken = f"lines of separators {'and one number' if lone else 'alone'} taken for"
     if len(sizes) > 1 and (not _are_alike(padded, sizes) or fewer == usual or _are_times(padded)):
         return False, ()
     if len(sizes) == 1 and len(table.groups[0]) > 1:
@@ -182,8 +183,12 @@ def _is_filled_up(table: Table) -> bool:
 
 
 def _are_edges(table: Table) -> bool:
-    """Return whether lines of separators alone stand before or behind the values of matrices."""
-    held = any(table.is_padded(x) and not is_blank(x) for x in table.lines[:_LOOKED_AT])
+    """Return whether lines of separators alone stand before or behind the values of matrices.
+
+    A lone number may stand behind them, as their sum.
+    """
     size, at = _usual(table), Counter(_blank_at(table, table.groups[0])).most_common(1)[0][0]
-    inside = set(range(size)) - {*at}
-    return not held and len(inside) == max(inside, default=0) - min(inside, default=0) + 1
+    inside = sorted(set(range(size)) - {*at})
+    if not inside:
+        return True
+    return inside[-1] - inside[0] < len(inside) and all(map(is_blank, table.row_lines[: inside[0]]))

@@ -70,7 +70,7 @@ def test_a_row_without_a_value_is_a_row(
 ) -> None:
     frames = without(cells)
     told = check(write(tmp_path, matrices(frames, separator, head)), frames, **settings)
-    assert any(f"{ALONE} rows" in one for one in told) is not bool(settings)
+    assert any("taken for rows without a value" in t for t in told) is not bool(settings)
 
 
 @pytest.mark.parametrize("head", ["Frame {}\n", ""], ids=["named", "blank lines"])
@@ -84,6 +84,16 @@ def test_an_outer_row_without_a_value_is_one_where_rows_are_told(
     remedy = "(give rows=6 if they are rows without a value)"
     assert f"recordings with {ALONE} blank ones {remedy}" in told
     assert not any(ALONE in one for one in check(path, frames, **TOLD))
+
+
+@pytest.mark.parametrize("filled", ["", ";;;;"])
+@pytest.mark.parametrize("total", ["{};;;;\n", ";;;;{}\n"])
+def test_a_lone_number_behind_a_matrix_is_no_row(total: str, filled: str, tmp_path: Path) -> None:
+    text = matrices(LOADED, head=f"Frame {{}}{filled}\n")
+    for k in range(len(LOADED)):
+        text = text.replace("\n\n", f"\n{total.format(100 + 17 * k % 5)}{filled}\v\n", 1)
+    told = check(write(tmp_path, text.replace("\v", "")), LOADED)
+    assert any("lines of separators and one number taken for blank ones" in one for one in told)
 
 
 def test_a_line_of_separators_among_frames_of_a_line_each_is_none(tmp_path: Path) -> None:
