@@ -136,6 +136,8 @@ def sides_of(lines: Sequence[str], loose: frozenset[str] = frozenset()) -> list[
             if not found and _are_rows(above, line):
                 return []
             found[key] = side
+    if not found:
+        return []
     stamps = map(stamp_of, above)
     told = zip(above, stamps, strict=True)
     before = frozenset(signature(x) for x, s in told if s.frame is not None or s.time is not None)

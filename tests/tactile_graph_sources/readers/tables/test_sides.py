@@ -85,6 +85,8 @@ def test_a_section_far_behind_is_not_dropped(
     for foot, sensor in enumerate(NAMES):
         frames, _ = frames_of(path, sensor=sensor)
         assert np.array_equal([f.image.values for f in frames], FEET[foot])
+    with pytest.raises(DataError, match="no sensor 'right toe'"):
+        frames_of(path, sensor="right toe")
 
 
 @pytest.mark.parametrize(
@@ -119,6 +121,20 @@ def test_titles_that_say_more_are_those_of_sections_where_a_sensor_is_told(
         assert np.array_equal([f.image.values for f in frames], FEET[foot])
     with pytest.raises(DataError, match=r"no sensor 'left toe'; .*Left, Right"):
         frames_of(path, sensor="left toe")
+
+
+def test_rows_that_begin_with_a_side_are_no_titles(tmp_path: Path) -> None:
+    lines = [
+        f"[{NAMES[foot]}]\n"
+        + "".join(
+            "".join(f"{NAMES[foot]}\t{row}\n" for row in matrix(foot, k).splitlines()[:6]) + "\n"
+            for k in range(4)
+        )
+        for foot in (0, 1)
+    ]
+    for foot, sensor in enumerate(NAMES):
+        frames, _ = frames_of(write(tmp_path, "".join(lines)), sensor=sensor)
+        assert np.array_equal([f.image.values for f in frames], FEET[foot])
 
 
 def test_marks_in_a_series_are_no_sections(tmp_path: Path) -> None:
