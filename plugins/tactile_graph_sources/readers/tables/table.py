@@ -444,7 +444,7 @@ def _named_width(dialect: Dialect, before: Sequence[str], width: int, n_fields: 
     for wide in range(n_fields, width, -1):
         header, _ = _header(dialect, before, wide)
         found = named(header) if header else Named()
-        if wide - 1 in found.cells and _fill_a_grid(found) and not _fill_a_grid(found, width):
+        if _fill_a_grid(found) and not _fill_a_grid(found, width):
             return wide
     return width
 
@@ -489,11 +489,9 @@ def _changes(before: Sequence[str], behind: Sequence[str]) -> bool:
 
     It names no columns then, but tells of each matrix: ``Index,3,,,``.
     """
-    line = next(x for x in reversed(before) if not is_blank(x))
-    if not any(c.isdecimal() for c in line):
-        return False
-    said = signature(line)
-    return any(x != line and signature(x) == said and not is_row(x) for x in behind)
+    line = next(x for x in reversed(before) if not is_blank(x)).strip()
+    said, alike = signature(line), (x.strip() for x in behind if x[:1] == line[:1])
+    return any(x.lower() != line.lower() and signature(x) == said and not is_row(x) for x in alike)
 
 
 def _is_unit(text: str) -> bool:

@@ -16,6 +16,7 @@ LOADED = np.random.default_rng(0).uniform(50, 100, (5, ROWS, COLUMNS)).round(1)
 HEADER = "time_s," + ",".join(f"r{i}c{j}" for i in range(ROWS) for j in range(COLUMNS)) + "\n"
 OUTER = [(i, j) for i in range(ROWS) for j in (0, 4)]
 TOLD = {"rows": ROWS, "columns": COLUMNS}
+SQUARE = ",".join(f"c{k}" for k in range(64, 81))
 ALONE = "lines of separators alone taken for"
 
 
@@ -175,7 +176,7 @@ def test_a_header_rules_over_cells_without_a_value(
     assert frames_of(path, **settings)[0][1].time_s == 0.01
 
 
-@pytest.mark.parametrize("spare", ["B1", "c64", "adc64", "T1", "c64,c65", "B1,B2", "note"])
+@pytest.mark.parametrize("spare", ["B1", "c64", "adc64", "T1", "c64,c65", "B1,B2", "note", SQUARE])
 def test_an_empty_column_that_has_a_name_is_no_cell_by_it(spare: str, tmp_path: Path) -> None:
     frames = np.random.default_rng(1).uniform(50, 100, (5, 8, 8)).round(1)
     stem = "adc" if "adc" in spare else "c"

@@ -55,3 +55,11 @@ def test_names_that_do_not_change_are_a_header(header: str, tmp_path: Path) -> N
     lines = header + "".join(",".join(map(str, row)) + "\n" for row in numbered.reshape(-1, 4))
     frames, _ = frames_of(write(tmp_path, lines), rows=1, columns=4 - n)
     assert np.array_equal([f.image.values[0] for f in frames], numbered.reshape(-1, 4)[:, n:])
+
+
+@pytest.mark.parametrize("again", ["r0c1,r0c0,r1c0,r1c1\n", "r0C1,r0C0,r1C0,r1C1 \n"])
+def test_a_header_may_come_again(again: str, tmp_path: Path) -> None:
+    first, last = ("".join(",".join(map(str, row)) + "\n" for row in half) for half in LOADED[:2])
+    frames, _ = frames_of(write(tmp_path, f"r0c1,r0c0,r1c0,r1c1\n{first}{again}{last}"))
+    true = LOADED[:2].reshape(-1, 4)[:, [1, 0, 2, 3]].reshape(-1, 2, 2)
+    assert np.array_equal([frame.image.values for frame in frames], true)
