@@ -78,6 +78,8 @@ def like_positions(matrices: Numbers) -> str:
     ----------
     matrices : ndarray, shape (n, rows, columns)
     """
+    if not len(matrices):
+        return ""
     lines = {"row": matrices[:, 0, 1:], "column": matrices[:, 1:, 0]}
     found = [what for what, line in lines.items() if _is_even(line[0]) and _are_alike(line)]
     if not found or (len(found) == 1 and _are_alike(matrices)):
@@ -92,7 +94,8 @@ def like_positions(matrices: Numbers) -> str:
 def _is_even(numbers: Numbers) -> bool:
     """Return whether numbers are evenly spaced, perhaps rounded, and more than one apart."""
     step = _step(numbers)
-    if step or len(numbers) < _FEWEST or (numbers % 1 != 0).any():
+    whole = np.isfinite(numbers).all() and (numbers % 1 == 0).all()
+    if step or len(numbers) < _FEWEST or not whole:
         return abs(step) > 1.0
     steps = np.diff(numbers)
     return bool(np.abs(steps).min() >= _LEAST_ROUNDED and np.ptp(steps) <= 1.0)

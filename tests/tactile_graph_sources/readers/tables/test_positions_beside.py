@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from helpers_recordings import frames_of, write
+from tactile_graph_sources.readers.tables.positions import like_positions
 
 LOADED = np.random.default_rng(0).uniform(0, 100, (4, 6, 4)).round(1)
 X, Y = [4.0, 12.0, 20.0, 28.0], [6.0, 18.0, 30.0, 42.0, 54.0, 66.0]
@@ -195,3 +196,9 @@ def test_a_matrix_that_changes_has_no_positions(tmp_path: Path) -> None:
     frames, report = frames_of(path)
     assert frames[0].image.shape == (6, 4)
     assert not any("positions" in told for told in report.counts)
+
+
+def test_numbers_without_end_are_no_positions() -> None:
+    with np.errstate(all="raise"):
+        assert like_positions(np.full((2, 5, 5), np.inf)) == ""
+        assert like_positions(np.empty((0, 5, 5))) == ""
