@@ -12,7 +12,7 @@ from tactile_graph.errors import DataError, TactileGraphError
 from tactile_graph.steps import Report
 from tactile_graph.wires import Frame
 from tactile_graph_sources.inspection.measure import Measured, measure
-from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.words.names import ColumnsTold
 from tactile_graph_sources.readers.words.told import Told
 from tactile_graph_sources.recording import opened

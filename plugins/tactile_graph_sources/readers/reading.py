@@ -236,6 +236,7 @@ class Reading:
             if filled is not None:
                 good &= values != filled
                 self.assume(f"cells of {filled:g} taken for missing")
+                self.steady.is_over = True
             if self.told.missing is not None:
                 good &= values != self.told.missing
             elif not self.steady.is_over:

@@ -15,7 +15,7 @@ from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph_sources.readers.arrays.masks import Masks, of_frames
 from tactile_graph_sources.readers.arrays.stack import MOST_CHANNELS, one_of_channels, stack_of
 from tactile_graph_sources.readers.arrays.times import TEXTS, in_seconds
-from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.laid import Laid, laid_in
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.words.names import ROLES

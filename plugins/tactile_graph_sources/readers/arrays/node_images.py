@@ -14,7 +14,7 @@ import numpy as np
 from tactile_graph.errors import DataError, did_you_mean, one_of
 from tactile_graph.quantities import is_quantity
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat
 from tactile_graph_sources.stores.layout import load_zarr

@@ -33,7 +33,7 @@ from tactile_graph_sources.readers.arrays.masks import (
 )
 from tactile_graph_sources.readers.arrays.stack import Axes, stack_of
 from tactile_graph_sources.readers.arrays.times import time_among
-from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.choosing.others import document_in
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.laid import Laid, laid_in

@@ -13,7 +13,7 @@ from typing import Any
 
 from tactile_graph.errors import DataError, did_you_mean, one_of, without
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.logs.cdr import decoder_of
 from tactile_graph_sources.readers.logs.mcap_chunks import check_chunks

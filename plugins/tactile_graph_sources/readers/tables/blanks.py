@@ -21,11 +21,11 @@ _FEWEST_CLIMBING = 3
 # -- columns -----------------------------------------------------------------------------------
 
 
-def as_wide_as_told(table: Table, told: Told) -> tuple[Table, str]:
+def as_wide_as_told(table: Table, told: Told) -> tuple[Table, tuple[str, ...]]:
     """Return a table with the columns at its end that hold nothing, as far as they are cells.
 
-    They are where the settings or the words before the table say so many cells; else separators
-    that all lines end with.
+    They are where only with them there are as many cells as the settings or the words before the
+    table say; else separators that all lines end with.
 
     Parameters
     ----------
@@ -36,26 +36,26 @@ def as_wide_as_told(table: Table, told: Told) -> tuple[Table, str]:
     Returns
     -------
     Table
-    str
-        What to ask where they may be either; empty otherwise.
+    tuple of str
+        The note where as many cells are there without the empty columns, but may be told with
+        them.
     """
     if table.named.cells or table.n_fields == table.width or told.columns is None:
-        return table, ""
-    n, wide = (told.rows or 0) * told.columns, table.width
-    lead = _led_by(table)
-    if table.width < told.columns <= table.n_fields:
-        wide = told.columns
-    elif table.width < n + lead <= table.n_fields:
-        if table.width == n and not table.clocks and len(table.rows) >= _FEWEST_CLIMBING:
-            return table, _of_last_question(n)
-        wide = table.width if table.width == n and not table.clocks else n + lead
-    return _widened(table, wide), ""
+        return table, ()
+    n, width = (told.rows or 0) * told.columns, table.width
+    if width < told.columns <= table.n_fields:
+        return _widened(table, told.columns), ()
+    known = {*table.clocks, *table.dates, *table.named.roles.values()}
+    lead = 1 + max(known) if known else _n_climbing(table)
+    if not width < n + lead <= table.n_fields:
+        return table, ()
+    if not known and width in (n, n + 1):  # most such files end their lines with a separator
+        return table, (_of_first_cell(n, lead) if len(table.rows) >= _FEWEST_CLIMBING else ())
+    return _widened(table, n + lead), ()
 
 
-def _led_by(table: Table) -> int:
-    """Return how many columns in front of the cells are times or numbers."""
-    if table.clocks:
-        return len({*table.clocks, *table.dates})
+def _n_climbing(table: Table) -> int:
+    """Return how many columns in front may be a number and a time, as they climb."""
     return next((k for k in range(2) if not rises(table.rows[:, k])), 2) if table.width > 2 else 0
 
 
@@ -70,11 +70,11 @@ def _widened(table: Table, width: int) -> Table:
     )
 
 
-def _of_last_question(n: int) -> str:
+def _of_first_cell(n: int, lead: int) -> tuple[str, ...]:
+    remedy = "time_column=1" if lead == 1 else "frame_column=1 and time_column=2"
     return (
-        f"a line is {n} values and an empty field behind them, and the first climbs from line to "
-        f"line: {n} cells (then cells=1-{n}), or a time and {n} cells of which the last has no "
-        f"value (then time_column=1, cells=2-{n + 1})"
+        f"lines of {n} cells read without the empty field behind them, though the first cell "
+        f"climbs (give {remedy} if it is none and the last cell has no value)",
     )
 
 
@@ -104,9 +104,9 @@ def blank_rows(table: Table, padded: Table, told: Told) -> tuple[bool, tuple[str
     """Return whether lines of separators alone are rows without a value, and the note on it.
 
     They are where so many rows are told; else where other lines part the matrices, which are of
-    one size with them, and the same rows of each are blank. Spreadsheets fill all lines up with
-    separators, those that part matrices too: there they are blank lines, and so are those at the
-    edge of each matrix where no other line is blank.
+    one size with them, and the same rows of each, with others before and behind them, are blank.
+    At the edge of matrices they may as well be blank lines, and surely are where a spreadsheet
+    filled up the lines that part matrices, too.
 
     Parameters
     ----------
@@ -120,14 +120,17 @@ def blank_rows(table: Table, padded: Table, told: Told) -> tuple[bool, tuple[str
             return False, ()  # a frame a line
         return _has_rows(padded, told.rows) and not _has_rows(table, told.rows), ()
     sizes, fewer, usual = padded.groups[0], _usual(table), _usual(padded)
-    taken = "lines of separators alone taken for"
+    lone = any(padded.is_padded(x) and not is_blank(x) for x in padded.row_lines)
+    taken = f"lines of separators {'and one number' if lone else 'alone'} taken for"
     if len(sizes) > 1 and (not _are_alike(padded, sizes) or fewer == usual or _are_times(padded)):
         return False, ()
     if len(sizes) == 1 and len(table.groups[0]) > 1:
         return False, ()  # nothing else parts the matrices
-    if len(sizes) == 1 or _is_filled_up(padded) or _are_edges(padded):
-        return False, (f"{taken} blank ones (give rows={usual} if they are rows without a value)",)
-    return True, (f"{taken} rows without a value (give rows={fewer} if they are blank lines)",)
+    if len(sizes) > 1 and not _are_edges(padded):
+        return True, (f"{taken} rows without a value (give rows={fewer} if they are blank lines)",)
+    if usual == fewer + 1 and _is_filled_up(padded):
+        return False, ()
+    return False, (f"{taken} blank ones (give rows={usual} if they are rows without a value)",)
 
 
 def _are_alike(table: Table, sizes: Sequence[int]) -> bool:
@@ -180,13 +183,12 @@ def _is_filled_up(table: Table) -> bool:
 
 
 def _are_edges(table: Table) -> bool:
-    """Return whether all that lines of separators do is to part matrices, as blank lines would."""
-    lines = [*table.lines[:_LOOKED_AT]]
-    while lines and not lines[-1]:
-        lines.pop()
-    if any(is_blank(x) and not table.is_padded(x) for x in lines):
-        return False
-    held = any(table.is_padded(x) and not is_blank(x) for x in lines)
+    """Return whether lines of separators alone stand before or behind the values of matrices.
+
+    A lone number may stand behind them, as their sum.
+    """
     size, at = _usual(table), Counter(_blank_at(table, table.groups[0])).most_common(1)[0][0]
-    inside = set(range(size)) - {*at}
-    return not held and len(inside) == max(inside, default=0) - min(inside, default=0) + 1
+    inside = sorted(set(range(size)) - {*at})
+    if not inside:
+        return True
+    return inside[-1] - inside[0] < len(inside) and all(map(is_blank, table.row_lines[: inside[0]]))

@@ -83,6 +83,12 @@ def _are_even(at: Sequence[int], n_rows: int) -> bool:
     return usual > 1 and max(sizes) == usual and n >= min(EVENLY * len(sizes), len(sizes) - 2) > 1
 
 
+def is_time(line: str) -> bool:
+    """Return whether a line says a time and nothing else: ``t = 0.05 s``, ``Time,0.05,,,``."""
+    timed = _TIMED.search(line)
+    return timed is not None and not re.search(r"\w", line[: timed.start()] + line[timed.end() :])
+
+
 def stamp_of(line: str) -> Stamp:
     """Return the number and the time that a line between matrices says, its decimals by points."""
     label = FRAME_LINE.fullmatch(line)

@@ -17,6 +17,7 @@ A table seldom says what it is. The rules, in order:
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
@@ -34,9 +35,18 @@ from tactile_graph_sources.readers.tables.by_numbers import unplaced
 from tactile_graph_sources.readers.tables.doubts import doubt_about
 from tactile_graph_sources.readers.tables.evidence import counts_up, spacing
 from tactile_graph_sources.readers.tables.layout import Layout, days_of, several_units, timed
-from tactile_graph_sources.readers.tables.positions import like_positions, pitch_cm
-from tactile_graph_sources.readers.tables.sensors import NoneNamedError, of_one_sensor
-from tactile_graph_sources.readers.tables.sides import of_several, of_side, side_of, sides_of
+from tactile_graph_sources.readers.tables.positions import like_positions, pitch_cm, unit_cm
+from tactile_graph_sources.readers.tables.sensors import NoneNamedError, is_named, of_one_sensor
+from tactile_graph_sources.readers.tables.sides import (
+    Side,
+    are_numbered_alike,
+    asked_of,
+    loose_titles,
+    names_of,
+    of_several,
+    of_side,
+    sides_of,
+)
 from tactile_graph_sources.readers.tables.table import Table, table_of
 from tactile_graph_sources.readers.words.counter import runs_over
 from tactile_graph_sources.readers.words.dialect import unquoted
@@ -78,18 +88,45 @@ def layout_of(
     if lines and lines[0].lstrip().lower().startswith(_MARKED_UP):
         return None
     sides = sides_of(lines)
-    if not sides or (len(sides) == 1 and whole):
-        return _layout_of(lines, told, whole, names)
-    asked, first = side_of(told.sensor), next(iter(sides.values()))
-    if asked is None and len(sides) > 1:
-        both = tuple(side.name for side in sides.values())
+    if sides:
+        return _of_one_side(lines, sides, told, whole, names)
+    layout = _layout_of(lines, told, whole, names)
+    loose = loose_titles(lines) if layout is not None else None
+    if layout is None or not loose or not (sides := sides_of(lines, loose)):
+        return layout
+    if layout.trouble == _names_none(told.sensor) or are_numbered_alike(lines, loose):
+        return _of_one_side(lines, sides, told, whole, names)
+    note = f"lines such as {sides[0].title!r} taken for remarks"
+    remedy = f"(give sensor={sides[0].name} if they are titles of sections)"
+    return replace(layout, assumed=(*layout.assumed, f"{note} {remedy}"))
+
+
+def _of_one_side(
+    lines: Sequence[str], sides: Sequence[Side], told: Told, whole: bool, names: Sequence[str]
+) -> Layout | None:
+    """Return what `layout_of` does of a table with sections of the left and the right."""
+    try:
+        side = asked_of(sides, told.sensor)
+    except ValueError as error:
+        return Layout("unclear", trouble=str(error), sensors=names_of(sides))
+    if side is None and (told.sensor or len(sides) > 1):
+        both = names_of(sides)
         there = f"no sensor {told.sensor!r}; " if told.sensor else ""
         return Layout("unclear", trouble=there + of_several(both), sensors=both)
-    side = first._replace(alone=True) if asked is None else asked
-    known = side if side.which in sides else first
-    mine = [line for _, line in of_side(enumerate(lines), known._replace(alone=False), "")]
-    layout = _layout_of(mine, told, whole, names)
+    alone = replace(told, sensor="")
+    if len(sides) == 1 and whole and (side is None or side.which == sides[0].which):
+        return _layout_of(lines, alone, whole, names)
+    if whole and side is not None and side.which not in {s.which for s in sides}:
+        return Layout("unclear", trouble=_names_none(told.sensor))
+    side = side or replace(sides[0], alone=True)
+    known = side if side.which in {s.which for s in sides} else sides[0]
+    mine = [line for _, line in of_side(enumerate(lines), replace(known, alone=False), "")]
+    layout = _layout_of(mine, alone, whole, names)
     return None if layout is None else replace(layout, side=side)
+
+
+def _names_none(sensor: str) -> str:
+    return f"no sensor {sensor!r} is told apart by columns, lines or titles of it; leave sensor out"
 
 
 def _layout_of(
@@ -103,22 +140,24 @@ def _layout_of(
     if table is None:
         return None
     shape = told.with_said(table.said.rows, table.said.columns)
+    if table.positions is not None and _are_told(table, shape):
+        table = table_of(lines, told.of_columns, whole, names, placed=False) or table
     of_blanks: tuple[str, ...] = ()
     if may_have_blank_rows(table, lines):
         table, of_blanks = _with_blank_rows(table, shape, lines, told, names)
-    table, question = as_wide_as_told(table, shape)
+    table, of_width = as_wide_as_told(table, shape)
     base = Layout("unclear", table.dialect, table.width, table.first_line, said=table.said)
-    base = replace(base, n_fields=table.n_fields if table.padded else 0)
+    base = replace(base, n_fields=table.n_fields if table.padded else 0, assumed=of_width)
     if table.positions is not None:
-        base = _placed_apart(base, table.positions, told)
-    if question:
-        return replace(base, trouble=question)
+        base = _placed_apart(base, table, lines, told)
     try:
         table, sensor = of_one_sensor(table, told)
     except NoneNamedError as error:
         return replace(base, trouble=str(error), sensors=error.names)
     except ValueError as error:
         return replace(base, trouble=str(error))
+    if told.sensor and not is_named(table, lines, told.sensor):
+        return replace(base, trouble=_names_none(told.sensor))
     base = replace(base, sensor=sensor)
     roles = _roles(table, told.of_columns)
     trouble = (
@@ -170,14 +209,23 @@ def _layout_of(
     return replace(layout, assumed=(*layout.assumed, *notes))
 
 
-def _placed_apart(base: Layout, positions: tuple[float, float], told: Told) -> Layout:
+def _are_told(table: Table, shape: Told) -> bool:
+    """Return whether rows or columns that are told are those with what may be positions."""
+    sizes = Counter(table.groups[0])
+    return shape.columns == table.width or shape.rows == sizes.most_common(1)[0][0] + 1
+
+
+def _placed_apart(base: Layout, table: Table, lines: Sequence[str], told: Told) -> Layout:
     """Return the layout with the pitch that positions beside the cells give, and the note on it."""
-    x, y = positions
+    x, y = positions = table.positions or (1.0, 1.0)
+    corner, words = table.dialect.fields(table.header_line)[0], lines[: table.first_line - 1]
+    unit = unit_cm(corner, words)
     note = f"positions beside the cells, {x:g} x {y:g} apart"
-    pitch = None if told.pitch_cm or base.said.pitch_cm else pitch_cm(positions)
+    pitch = None if told.pitch_cm or base.said.pitch_cm else pitch_cm(positions, unit)
     if pitch is not None:
         base = replace(base, said=replace(base.said, pitch_cm=pitch))
-        note = f"{note}, taken for mm (else give pitch_cm)"
+        taken = "taken for mm" if unit is None else f"a pitch of {pitch[0]:g} x {pitch[1]:g} cm"
+        note = f"{note}, {taken} (else give pitch_cm)"
     return replace(base, assumed=(*base.assumed, note))
 
 
@@ -185,7 +233,7 @@ def _with_blank_rows(
     table: Table, shape: Told, lines: Sequence[str], told: Told, names: Sequence[str]
 ) -> tuple[Table, tuple[str, ...]]:
     """Return the table with its lines of separators alone as what they are, and the note on it."""
-    padded = table_of(lines, told.of_columns, table.whole, names, padded=True)
+    padded = table_of(lines, told.of_columns, table.whole, names, True, table.positions is not None)
     if padded is None:
         return table, ()
     are_rows, notes = blank_rows(table, padded, shape)

@@ -16,8 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tactile_graph.errors import did_you_mean, one_of
-from tactile_graph_sources.readers.tables.table import Table
-from tactile_graph_sources.readers.words.dialect import unquoted
+from tactile_graph_sources.readers.tables.breaks import FRAME_LINE, stamp_of
+from tactile_graph_sources.readers.tables.sides import loose_titles
+from tactile_graph_sources.readers.tables.table import Table, is_comment
+from tactile_graph_sources.readers.words.dialect import is_row, unquoted
 from tactile_graph_sources.readers.words.names import Named, as_told, named
 from tactile_graph_sources.readers.words.told import Told
 
@@ -182,6 +184,38 @@ def labels_of_lines(name: str, said: Iterable[str]) -> tuple[str, ...]:
     counted = Counter(said)
     often = sorted(n for n, times in counted.items() if times > 1)
     return tuple(often) if 1 < len(often) == len(counted) <= MOST_SENSORS else ()
+
+
+def is_named(table: Table, lines: Sequence[str], sensor: str) -> bool:
+    """Return whether a table says that it is of a sensor: a column, each line, or its first words.
+
+    Words say it where no others between the rows may name another one.
+
+    Parameters
+    ----------
+    table : Table
+    lines : sequence of str
+        The first lines of the file.
+    sensor : str
+        What is asked for.
+    """
+    asked, names = sensor.lower(), table.named.names
+    said = [n for n in names if _PLACE.fullmatch(n.strip())]
+    columns = [k for k, n in enumerate(names) if n.strip().lower() in _LINE_COLUMNS | _PARTS]
+    said += [row[k] for row in table.texts[:1] for k in columns]
+    if any(asked in text.lower() for text in said):
+        return True
+    if loose_titles(lines):
+        return False
+    word = re.compile(rf"(?<![^\W_]){re.escape(asked)}(?![^\W_])", re.IGNORECASE)
+    above, below = lines[: table.first_line - 1], table.lines
+    others = (line for line in below if not word.search(line))
+    return any(map(word.search, above)) and not any(map(_may_name, others))
+
+
+def _may_name(line: str) -> bool:
+    plain = is_row(line) or is_comment(line) or FRAME_LINE.fullmatch(line)
+    return not plain and any(c.isalpha() for c in line) and stamp_of(line).time is None
 
 
 def of_one_sensor(table: Table, told: Told) -> tuple[Table, tuple[int, str] | None]:

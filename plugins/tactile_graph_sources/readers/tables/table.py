@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import isqrt
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from tactile_graph_sources.readers.tables import labview
 from tactile_graph_sources.readers.tables.breaks import (
     FRAME_LINE,
     breaks_of,
+    is_time,
     opens_matrix,
     signature,
     stamp_of,
@@ -278,6 +280,7 @@ def table_of(
     whole: bool,
     names: Sequence[str] = (),
     padded: bool = False,
+    placed: bool = True,
 ) -> Table | None:
     """Return the parts of a table; None where the lines are none.
 
@@ -292,6 +295,8 @@ def table_of(
         Of the columns, where each line says them.
     padded : bool
         Whether lines of as many separators as rows have are rows.
+    placed : bool
+        Whether positions may stand beside the cells.
 
     Raises
     ------
@@ -326,6 +331,8 @@ def table_of(
         return None  # a text that holds a few numbers
     header_line = ""
     header, unit = _header(dialect, lines[:start], width)
+    if header and _changes(lines[:start], lines[start:_LOOKED_AT]):
+        header, unit = (), ""
     if len(names) == width:
         header = tuple(names)
     if not header and len(full) > 1 and _is_numbered(full[0][1]):
@@ -333,7 +340,8 @@ def table_of(
         if others:  # numbers that never change are readings
             header, header_line = tuple(full[0][1]), lines[start]
             full, start = others, others[0][0]
-    positions = None if header else positions_of([f for _, f in full])
+    placed = placed and not header and not told.cells
+    positions = positions_of([f for _, f in full]) if placed else None
     if positions is not None:
         header_line = lines[start]
         full = [(k, f) for k, f in full if lines[k] != header_line]
@@ -429,12 +437,26 @@ def _width(fields: Sequence[Sequence[str]]) -> tuple[int, int]:
 
 
 def _named_width(dialect: Dialect, before: Sequence[str], width: int, n_fields: int) -> int:
-    """Return the width with columns that hold nothing, as far as the header says they are cells."""
+    """Return the width with columns that hold nothing, as far as the header says they are cells.
+
+    Spare columns have names, too: cells are those with which the names fill a grid.
+    """
     for wide in range(n_fields, width, -1):
         header, _ = _header(dialect, before, wide)
-        if header and wide - 1 in named(header).cells:
+        found = named(header) if header else Named()
+        if _fill_a_grid(found) and not _fill_a_grid(found, width):
             return wide
     return width
+
+
+def _fill_a_grid(header: Named, width: int = ENDLESS) -> bool:
+    """Return whether the named cells of the first columns fill a grid, a square if unplaced."""
+    within = [k < width for k in header.cells]
+    if not header.places:
+        return isqrt(sum(within)) ** 2 == sum(within)
+    places = [place for place, one in zip(header.places, within, strict=True) if one]
+    rows, columns = ({place[axis] for place in places} for axis in (0, 1))
+    return len(places) == len(rows) * len(columns)
 
 
 def _asked_width(told: ColumnsTold, n_fields: int) -> int:
@@ -462,6 +484,16 @@ def _header(dialect: Dialect, before: Sequence[str], width: int) -> tuple[tuple[
     return tuple(timed), others.most_common(1)[0][0] if others else ""
 
 
+def _changes(before: Sequence[str], behind: Sequence[str]) -> bool:
+    """Return whether the last of the words before rows comes again with other numbers.
+
+    It names no columns then, but tells of each matrix: ``Index,3,,,``.
+    """
+    line = next(x for x in reversed(before) if not is_blank(x)).strip()
+    said, alike = signature(line), (x.strip() for x in behind if x[:1] == line[:1])
+    return any(x.lower() != line.lower() and signature(x) == said and not is_row(x) for x in alike)
+
+
 def _is_unit(text: str) -> bool:
     return text.lower() in SECONDS or value_unit(text)[0] != "raw"
 
@@ -473,7 +505,7 @@ def _names(dialect: Dialect, before: Sequence[str], width: int) -> tuple[str, ..
     quoted = tuple(n.strip() for n in next(csv.reader([text]))) if '"' in text else ()
     if len(quoted) == width > 1 and dialect.separator == "," and not any(map(_is_number, quoted)):
         return quoted  # as pandas writes names that are pairs: "(0, 1)"
-    if not text or is_row(text) or FRAME_LINE.fullmatch(text) or width < 2:
+    if not text or is_row(text) or FRAME_LINE.fullmatch(text) or is_time(text) or width < 2:
         return ()
     separator = dialect.separator
     if separator is None or separator not in text:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tactile_graph.errors import DataError
 from tactile_graph.quantities import is_quantity
 from tactile_graph.wires import Frame
-from tactile_graph_sources.readers.choosing.choice import SeveralSensorsError
+from tactile_graph_sources.readers.choice import SeveralSensorsError
 from tactile_graph_sources.readers.head import Head
 from tactile_graph_sources.readers.reading import Reading
 from tactile_graph_sources.readers.recording_format import RecordingFormat

@@ -51,12 +51,33 @@ def test_a_number_for_no_sensor_is_told_and_taken_for_missing_where_it_is_said(
         np.where(np.random.default_rng(1).random((5, 6, 4)) < 0.3, -1.0, LOADED),
         LOADED - 50.0,
         np.where(NO_SENSOR, -1.0, LOADED)[:1],
+        np.full((5, 6, 4), -1.0),
+        np.where(NO_SENSOR, np.where(np.arange(4) < 3, -1.0, -2.0), LOADED),
     ],
-    ids=["none", "not in all", "not the same", "noise", "tared", "one frame"],
+    ids=["none", "not in all", "not the same", "noise", "tared", "one frame", "all", "two numbers"],
 )
 def test_readings_below_zero_are_readings(frames: np.ndarray, tmp_path: Path) -> None:
     _, report = frames_of(write(tmp_path, text(frames)), rows=6, columns=4)
     assert not told(report)
+
+
+def test_a_number_that_is_taken_for_missing_is_told_once(tmp_path: Path) -> None:
+    _, report = frames_of(write(tmp_path, text(np.where(NO_SENSOR, -9999.0, LOADED))))
+    assert "cells of -9999 taken for missing" in " ".join(report.counts)
+    assert not told(report)
+
+
+@pytest.mark.parametrize("last", [LOADED, np.where(NO_SENSOR, -1.0, LOADED)])
+def test_a_number_is_told_of_all_files_of_a_recording(last: np.ndarray, tmp_path: Path) -> None:
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    frames = [*np.where(NO_SENSOR, -1.0, LOADED)[:4], last[4]]
+    for k, frame in enumerate(frames):
+        rows = "\n".join(",".join(f"{v:g}" for v in row) for row in frame)
+        (folder / f"frame_{k}.csv").write_text(rows + "\n")
+    found, report = frames_of(folder, rows=6, columns=4)
+    assert len(found) == 5
+    assert bool(told(report)) is (last is not LOADED)
 
 
 @pytest.mark.parametrize("in_stacks", [False, True])
