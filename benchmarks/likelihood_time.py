@@ -2,9 +2,10 @@
 
 Run with ``python benchmarks/likelihood_time.py`` (about two minutes); ``--series N`` takes other
 than 40 of each kind. DISC I of the thesis, and smaller ones in noise. At rest the unevenness
-stays, so only the scatter of readings averages out: shown on the thesis' pad, on one whose readings scatter by 50 %, and on an
-even one. Put down again, the sizes' posterior is the next prior; also of a ball, of weight off
-centre and on foam, as in ``likelihood_robustness.py``, with pressure ``any`` and ``even``.
+stays, so only the scatter of readings averages out: shown on the thesis' pad, on one whose
+readings scatter by 50 %, and on an even one. Put down again, the sizes' posterior is the next
+prior; also of a ball, of weight off centre and on foam, as in ``likelihood_robustness.py``, with
+pressure ``any`` and ``even``.
 """
 
 from __future__ import annotations

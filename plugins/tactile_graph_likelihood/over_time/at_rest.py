@@ -107,9 +107,10 @@ class AtRest:
         width = np.sqrt(np.where(on, scatter + its.width**2, before) + before / n)
         repeats = (1.0 - ODD) * _normal(now.logs - means, width) + ODD / SPAN
         appears = ODD / SPAN + _normal(now.logs - its.least, np.hypot(2.0 * self._sigma, its.width))
-        fades = ODD + (1.0 - ODD) * _below((its.least - means) / width)
-        fades = np.maximum(fades, 1.0 - self._on / np.maximum(self._seen, 1.0))
-        rested = np.where(on, np.where(was, repeats, appears), np.where(was, fades, 1.0))
+        rested = np.where(on, np.where(was, repeats, appears), 1.0)
+        gone = was & ~on
+        fades = ODD + (1.0 - ODD) * _below(((its.least - means) / width)[gone])
+        rested[gone] = np.maximum(fades, 1.0 - self._on[gone] / self._seen[gone])
         fresh = np.where(on, 0.5 * _normal(now.logs - middle, spread), np.where(was, 0.5, 1.0))
         known = (now.states != UNKNOWN) & (self._seen > 0.0)
         moved = np.log(fresh / rested)[known].sum()
@@ -128,9 +129,8 @@ class AtRest:
 
 
 def _below(z: Values) -> Values:
-    """Return the normal distribution's share below z."""
-    flat = [0.5 * math.erfc(-e * math.sqrt(0.5)) for e in z.ravel().tolist()]
-    return np.array(flat).reshape(z.shape)
+    """Return the normal distribution's share below z, shape (N,)."""
+    return np.array([0.5 * math.erfc(-e * math.sqrt(0.5)) for e in z.tolist()])
 
 
 def _normal(off: Values, width: Values | float) -> Values:
