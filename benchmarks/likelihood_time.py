@@ -1,10 +1,11 @@
 """An object over time: error against frames at rest and placements, moves noticed, false alarms.
 
 Run with ``python benchmarks/likelihood_time.py`` (about two minutes); ``--series N`` takes other
-than 40 of each kind. DISC I of the thesis. At rest the unevenness stays, so only the scatter of
-readings averages out: shown on the thesis' pad, on one whose readings scatter by 50 %, and on an
-even one. Put down again, the sizes' posterior is the next prior; also of a ball, of weight off
-centre and on foam, as in ``likelihood_robustness.py``, with pressure ``any`` and ``even``.
+than 40 of each kind. DISC I of the thesis, and smaller ones in noise. At rest the unevenness
+stays, so only the scatter of readings averages out: shown on the thesis' pad, on one whose
+readings scatter by 50 %, and on an even one. Put down again, the sizes' posterior is the next
+prior; also of a ball, of weight off centre and on foam, as in ``likelihood_robustness.py``, with
+pressure ``any`` and ``even``.
 """
 
 from __future__ import annotations
@@ -157,6 +158,34 @@ def false_alarms(frames: int) -> None:
         print(f"  {name:<20} {rate:6.2f}   median {median:.0f} us")
 
 
+def rests_in_noise(series: int) -> None:
+    """Print how often a disc moves at rest where readings are not averaged, and how it is found."""
+    print(
+        "\nPipeline circle-followed, 24 frames of a disc at rest, pads read once and told as ever"
+    )
+    for load_g in (120, 400):
+        for noise_v, bits in ((2e-4, 12), (2e-3, 12), (2e-3, 10), (5e-3, 12), (5e-3, 8)):
+            on = {**PADS["thesis' pad"], "scan": {"samples": 1, "noise_v": noise_v}}
+            on["converter"] = {"bits": bits, "low_v": -5, "high_v": 5}
+            moved, inside, off = [], [], []
+            for seed in range(series):
+                radius_cm = 2.5 + 1.5 * seed / series
+                weight_g = load_g * np.pi * (radius_cm / PITCH_CM) ** 2
+                disc = {"shape": "disc", "name": "D", "weight_g": weight_g, "radius_cm": radius_cm}
+                pipeline = load("circle-followed").with_source(
+                    "simulate", scene={"objects": [disc], "hold": 10**6}, frames=24, pad=on
+                )
+                results = list(pipeline.stream(seed=seed))
+                moved += [result["disc.moved"] for result in results[1:]]
+                last, true = results[-1]["disc.shape"], results[-1].frame.truth[0].shape
+                inside.append(last.posterior.contains(true))
+                off.append(np.hypot(last.x_cm - true.x_cm, last.y_cm - true.y_cm))
+            print(
+                f"  {load_g} g, {1e3 * noise_v:.1f} mV, {bits} bits: moved {np.mean(moved):6.1%}, "
+                f"in 90 % {np.mean(inside):6.1%}, centre/cm {np.mean(off):.3f}"
+            )
+
+
 def step_of(on: dict[str, Any], **settings: Any) -> FollowFootprint:
     return FollowFootprint(settings=FootprintSettings(pad=on, on_pad="whole"), **settings)
 
@@ -193,6 +222,7 @@ def main() -> None:
             )  # fmt: skip
     moves(chosen.series)
     false_alarms(chosen.frames)
+    rests_in_noise(chosen.series)
 
 
 if __name__ == "__main__":

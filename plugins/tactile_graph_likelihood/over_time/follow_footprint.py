@@ -10,9 +10,11 @@ from typing import Annotated, Any, Literal, NamedTuple
 from annotated_types import Ge, Le, Lt
 
 from tactile_graph.errors import Degenerate
-from tactile_graph.steps import Spread, TimeGap
+from tactile_graph.steps import Grid, Quantity, Spread, TimeGap
+from tactile_graph.wires import Image
 from tactile_graph_likelihood.known.known_sizes import KnownSizes, sizes_of
 from tactile_graph_likelihood.over_time.at_rest import AtRest
+from tactile_graph_likelihood.over_time.noise_behind import NoiseBehind, noise_behind
 from tactile_graph_likelihood.settings import DEFAULTS, FootprintSettings, Load, Positive
 from tactile_graph_likelihood.single.any_pressure import AnyPressure, asked_by
 from tactile_graph_likelihood.single.fit_footprint import KINDS
@@ -106,6 +108,7 @@ class FollowFootprint:
         self._fixed = pad.unevenness.fixed if fixed is None else fixed
         self._rest_s, self._same = rest_s, same_object
         self._model = replace(settings, sigma=self._sigma).model(KINDS[shape])
+        self._pad = pad
         noise, self._any = self._model.noise, settings.pressure == "any"
         self._least = math.log(noise.least) if noise.least > 0.0 else -700.0
         self._resting: AtRest | None = None
@@ -113,43 +116,59 @@ class FollowFootprint:
         self._known: KnownSizes | None = None
         self._used, self._placements = 0, 0
 
-    def __call__(self, image: Load, *, gap_s: TimeGap = None) -> Followed:
+    def __call__(
+        self,
+        image: Load,
+        volts: Annotated[Image | None, Quantity("volt"), Grid.like("image")] = None,
+        *,
+        gap_s: TimeGap = None,
+    ) -> Followed:
         """Return the outline by this frame and those before it.
 
         Parameters
         ----------
         image : Image
             Loads; invalid cells say nothing.
+        volts : Image, optional
+            The readings that loads in grams were made of: what is no more than noise by the frame
+            itself (`above_noise`) then shows nothing, and loads may change by the noise in them.
+            Without it loads repeat as the pad and ``frame_sigma`` say, and what noise the circuit's
+            inverse has turned into loads passes for the object's.
 
         Raises
         ------
+        RuleError
+            If the volts are of another shape, or of loads that are not in grams.
         Degenerate
-            If nothing is touched, or no such outline explains what is; the object is then gone.
+            If nothing is touched, nothing rises above the noise, or no such outline explains what
+            is; the object is then gone.
         """
         try:
-            readings = self._model.readings(image)
+            readings, noise = self._model.readings(image), None
+            if volts is not None:
+                readings, noise = noise_behind(readings, image, volts, self._pad, self._least)
             if gap_s is None or gap_s < 0.0:  # a clock that was set back
                 gap_s = SOON_S
-            if self._rests(readings, gap_s):
-                return self._again(readings)
-            return self._put_down(readings)
+            if self._rests(readings, noise, gap_s):
+                return self._again(readings, noise)
+            return self._put_down(readings, noise)
         except Degenerate:
             self._resting = None
             raise
 
-    def _rests(self, readings: Readings, gap_s: float) -> bool:
+    def _rests(self, readings: Readings, noise: NoiseBehind | None, gap_s: float) -> bool:
         resting = self._resting
         if resting is None or not resting.fits_grid(readings):
             return False
         odds = math.expm1(min(gap_s / self._rest_s, 700.0))
         prior = math.log(max(odds, STILL_MOVES**resting.frames, 1e-12))
-        return resting.log_odds_of_move(readings) + prior < 0.0
+        return resting.log_odds_of_move(readings, noise) + prior < 0.0
 
-    def _again(self, readings: Readings) -> Followed:
+    def _again(self, readings: Readings, noise: NoiseBehind | None) -> Followed:
         resting = self._resting
         assert resting is not None
         assert self._posterior is not None
-        resting.add(readings)
+        resting.add(readings, noise)
         n = resting.frames
         scatter = self._frame_sigma**2
         if (1.0 / self._used - 1.0 / n) * scatter > WORTH * (self._sigma**2 + scatter / n):
@@ -159,7 +178,7 @@ class FollowFootprint:
             self._used = n
         return Followed(likely(self._posterior), n, self._placements, moved=False)
 
-    def _put_down(self, readings: Readings) -> Followed:
+    def _put_down(self, readings: Readings, noise: NoiseBehind | None) -> Followed:
         before, self._resting = self._posterior, None
         fits = [self._fit(readings, None, 1)]
         if before is not None and self._same > 0.0:
@@ -177,7 +196,7 @@ class FollowFootprint:
         self._placements = self._placements + 1 if same else 1
         self._known = known if same else None
         self._posterior, self._used = chosen, 1
-        self._resting = AtRest(readings, self._frame_sigma, self._least)
+        self._resting = AtRest(readings, self._frame_sigma, self._least, noise)
         return Followed(likely(chosen), 1, self._placements, moved=True)
 
     def _carried(self, before: Posterior, now: _Fit) -> KnownSizes:
