@@ -14,6 +14,10 @@ MEMORY, BEFORE = 20, 4
 """Frames over which it is told how an object's centre scatters, about; what is told before any is
 seen is worth so many."""
 
+ODDEST = 4.0
+"""Times the scatter so far, or what is expected if that is more, that a frame counts for at most: a
+centre that is misplaced once, as where objects touch, says little of the others."""
+
 ANYWHERE_CM = 1e3
 """Standard deviation of a place before anything is seen there."""
 
@@ -146,7 +150,7 @@ class Followed:
         at, along = self.place / spread, self.both / spread
         off_x, off_y = x_cm - self.x_cm, y_cm - self.y_cm
         if self.n_taken > 1:  # what is seen first after it appears tells of its speed alone
-            odd = 0.5 * (off_x**2 + off_y**2) / spread
+            odd = min(0.5 * (off_x**2 + off_y**2) / spread, ODDEST * max(self.scatter, 1.0))
             self.scatter += (odd - self.scatter) / min(self.n_taken + BEFORE, MEMORY)
         self.x_cm += at * off_x
         self.y_cm += at * off_y

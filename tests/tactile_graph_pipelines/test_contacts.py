@@ -51,3 +51,16 @@ def test_the_level_taken_is_told_once(tmp_path: Path) -> None:
     said = call("run", "contacts", tmp_path / "one.npy").stdout
     assert said.count("which is above the frame's own noise") == 1
     assert "assumed  footprint: cells from" in said
+
+
+@pytest.mark.parametrize("first", [2.0, 100.0])
+def test_levels_by_noise_and_by_a_share_of_the_peak_are_in_one_range(
+    first: float, tmp_path: Path
+) -> None:
+    values = np.random.default_rng(1).normal(0.0, 0.1, (2, 16, 16))
+    values[0, 3:7, 3:7] += first
+    values[1, 3:7, 3:7] += 102.0 - first
+    np.save(tmp_path / "two.npy", values)
+    said = " ".join(call("run", "contacts", tmp_path / "two.npy").stdout.split())
+    assert (": 3 % of the peak, as that is more" in said) is (first == 100.0)
+    assert "in the frames looked at)" in said

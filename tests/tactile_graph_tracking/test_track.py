@@ -312,6 +312,16 @@ def test_the_speed_of_rest_follows_from_how_centres_scatter(noise_cm, dt_s):
     assert seen[1]["moves"] >= 105
 
 
+@pytest.mark.parametrize("dt_s", [0.02, 0.1])
+def test_a_misplaced_centre_makes_no_object_that_moves_rest(dt_s):
+    rng, track, seen = np.random.default_rng(7), Track(rest_cm_s="auto", gate_cm=9.0), []
+    for k in range(75):
+        x = 4.0 + 8.0 * dt_s * k + (1.5 if k in (40, 41) else 0.0)
+        off = rng.normal(0.0, 0.03, 2)
+        seen.append(track([Spot(x + off[0], 4.0 + off[1])], gap_s=dt_s).tracks[0].state)
+    assert set(seen[45:]) == {"moves"}
+
+
 def test_sure_centres_let_objects_move_slowly():
     track = Track(rest_cm_s="auto")
     for k in range(100):

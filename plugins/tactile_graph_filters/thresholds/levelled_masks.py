@@ -20,25 +20,32 @@ class LevelledMaskStack(MaskStack):
     masks : MaskStack
     levels : ndarray of float64, shape (n,)
         Takes ownership: it becomes read-only.
-    *told : str
-        Of which quantity the levels are, and what they are above: the same for all.
+    quantity : str
+        That the levels are of.
+    above : sequence of str
+        What each level is above.
     """
 
     item = LevelledMask
 
-    def __init__(self, masks: MaskStack, levels: NDArray[np.float64], *told: str) -> None:
+    def __init__(
+        self, masks: MaskStack, levels: NDArray[np.float64], quantity: str, above: Sequence[str]
+    ) -> None:
         super().__init__(masks.values, masks.pitch_cm, masks.origin_cm, masks.counts)
-        self.levels, self._told = Column(levels), told
+        self.levels, self._quantity, self._above = Column(levels), quantity, np.array(above, object)
 
     @classmethod
     def of(cls, values: Sequence[Any]) -> LevelledMaskStack:
         """Return masks of one shape, grid and kind of level as a stack."""
         levels = np.array([mask.level for mask in values])
-        return cls(MaskStack.of(values), levels, values[0].quantity, values[0].above)
+        return cls(
+            MaskStack.of(values), levels, values[0].quantity, [mask.above for mask in values]
+        )
 
     def __getitem__(self, i: int) -> LevelledMask:
         grid, count = (self.pitch_cm, self.origin_cm), int(self.counts[i])
-        return LevelledMask(self.values[i], *grid, count, self.levels[i], *self._told)
+        told = self._quantity, self._above[i]
+        return LevelledMask(self.values[i], *grid, count, self.levels[i], *told)
 
     def __iter__(self) -> Iterator[LevelledMask]:
         """Yield the mask of each frame."""
@@ -46,7 +53,8 @@ class LevelledMaskStack(MaskStack):
 
     def take(self, rows: Rows) -> LevelledMaskStack:
         """Return the masks of some of the frames."""
-        return LevelledMaskStack(super().take(rows), self.levels.values[rows], *self._told)
+        levels, above = self.levels.values[rows], list(self._above[rows])
+        return LevelledMaskStack(super().take(rows), levels, self._quantity, above)
 
     def field(self, name: str) -> Stack | None:
         """Return the levels, or what `MaskStack` knows."""

@@ -44,6 +44,8 @@ something seems to lie there: in less than one of 100 frames of an empty pad of 
 LEAST_SHARE = 0.03
 """And no lower than at this share of the peak, for frames without any noise below."""
 OWN_NOISE = "the frame's own noise"
+OF_PEAK = f": {100.0 * LEAST_SHARE:g} % of the peak, as that is more"
+"""Is told after what the level is above, where the noise alone does not decide."""
 
 
 def noise_level(image: Image) -> float:
@@ -70,16 +72,21 @@ def noise_level(image: Image) -> float:
     Chosen on 90 frames of a capacitive panel (CapContact), so that its contacts are as many as the
     optical reference shows.
     """
+    return told_level(image)[0]
+
+
+def told_level(image: Image) -> tuple[float, str]:
+    """Return the `noise_level`, and what it is above."""
     found = _lower(image)
     if found is None:
-        return math.inf
+        return math.inf, OWN_NOISE
     low, base, peak, seen = found
     level = level_above(base - low, base, peak)
     few = (seen.size - 1) // 4
-    if not 0 <= few < len(FEW_CELLS):
-        return level
-    raised = level_above(FEW_CELLS[few] * (base - low), base, peak)
-    return max(level, min(raised, _level_below_apart(seen)))
+    if 0 <= few < len(FEW_CELLS):
+        raised = level_above(FEW_CELLS[few] * (base - low), base, peak)
+        level = max(level, min(raised, _level_below_apart(seen)))
+    return level, OWN_NOISE + OF_PEAK if is_of_peak(level, base, peak) else OWN_NOISE
 
 
 def is_untold(image: Image) -> bool:
@@ -205,6 +212,11 @@ def level_above(spread: float, base: float, peak: float) -> float:
     """
     level = base + max(NOISES * (spread / LOW_TO_MIDDLE_SD), LEAST_SHARE * (peak - base))
     return level if level > base else math.nextafter(base, math.inf)
+
+
+def is_of_peak(level: float, base: float, peak: float) -> bool:
+    """Return whether the share of the peak made a level, not the noise."""
+    return level == base + LEAST_SHARE * (peak - base) > base
 
 
 class LevelledMask(Mask):

@@ -14,7 +14,12 @@ from tactile_graph.plugins.registry import installed
 from tactile_graph.steps import Report
 from tactile_graph.steps.settings import spelled, validate_settings
 from tactile_graph.wires import Frame, Image
-from tactile_graph_filters.thresholds.noise_level import level_above, lower_readings
+from tactile_graph_filters.thresholds.noise_level import (
+    OF_PEAK,
+    is_of_peak,
+    level_above,
+    lower_readings,
+)
 
 TOGETHER = 256
 """Cells in which noise that is cut off shows: of smaller pads, frames are looked at together."""
@@ -92,6 +97,8 @@ def recording_level(recording: Path | Mapping[str, Any]) -> RecordingLevel:
     level = level_above(spread, float(np.median(base)), float(peaks.max()))
     what = "noise" if spread > 0.0 else "zero, as no noise shows,"
     told = f"the {what} of {name}, {len(found)} frames"
+    if spread > 0.0 and is_of_peak(level, float(np.median(base)), float(peaks.max())):
+        told += OF_PEAK
     return RecordingLevel(level, quantities.pop(), told)
 
 

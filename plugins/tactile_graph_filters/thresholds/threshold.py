@@ -22,7 +22,7 @@ from tactile_graph_filters.thresholds.noise_level import (
     OWN_NOISE,
     LevelledMask,
     is_untold,
-    noise_level,
+    told_level,
 )
 from tactile_graph_filters.thresholds.recording_level import RecordingLevel, recording_level
 
@@ -124,7 +124,7 @@ def levelled(image: Image) -> LevelledMask:
         If a valid cell holds NaN or infinity: no noise is told from either.
     """
     require_finite(image)
-    level = noise_level(image)
+    level, above = told_level(image)
     mask = footprint(image, level)
     if mask.count == 0 and is_untold(image):
         raise Degenerate(
@@ -132,19 +132,21 @@ def levelled(image: Image) -> LevelledMask:
             "from the frame's own noise; give level, or noise_of a recording"
         )
     grid = (mask.pitch_cm, mask.origin_cm)
-    return LevelledMask(mask.values, *grid, mask.count, level, image.quantity)
+    return LevelledMask(mask.values, *grid, mask.count, level, image.quantity, above)
 
 
 def levelled_each(images: ImageStack) -> Answered:
     """Return what `levelled` gives of each of several frames; where it raises, it is not done."""
     out, n = np.zeros(images.values.shape, np.bool_), len(images)
     counts, levels, done = np.zeros(n, np.int64), np.zeros(n), np.zeros(n, np.bool_)
+    above = [OWN_NOISE] * n
     for i, image in enumerate(images):
         with suppress(Degenerate, DataError):  # told by the step itself
             mask = levelled(image)
             out[i], counts[i], levels[i], done[i] = mask.values, mask.count, mask.level, True
+            above[i] = mask.above
     masks = MaskStack(out, images.pitch_cm, images.origin_cm, counts)
-    return Answered(LevelledMaskStack(masks, levels, images.quantity, OWN_NOISE), done)
+    return Answered(LevelledMaskStack(masks, levels, images.quantity, above), done)
 
 
 def with_level(mask: Mask, recorded: RecordingLevel) -> LevelledMask:
@@ -291,7 +293,9 @@ class Threshold:
             return found
         assert isinstance(found.values, MaskStack)
         levels = np.full(len(image), recorded.level)
-        masks = LevelledMaskStack(found.values, levels, recorded.quantity, recorded.told)
+        masks = LevelledMaskStack(
+            found.values, levels, recorded.quantity, [recorded.told] * len(image)
+        )
         return Answered(masks, found.done)
 
 

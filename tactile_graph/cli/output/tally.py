@@ -300,10 +300,13 @@ class Tally:
                     self._widen(name, text)
 
     def _widen(self, node: str, text: str) -> None:
-        """Note the number in what a node took, which may be another in each frame."""
+        """Note the first number in what a node took, which may be another in each frame.
+
+        Words at the end may be, too.
+        """
         words = _DECIMAL.sub("#", self.assumed[node][0])
-        found = _DECIMAL.search(text)
-        if found is not None and _DECIMAL.sub("#", text) == words:
+        found, its = _DECIMAL.search(text), _DECIMAL.sub("#", text)
+        if found is not None and (its.startswith(words) or words.startswith(its)):
             number = float(found[0])
             low, high = self.ranges.get(node, (number, number))
             self.ranges[node] = (min(low, number), max(high, number))

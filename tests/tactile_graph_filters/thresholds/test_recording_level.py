@@ -11,7 +11,7 @@ from helpers_cli import call
 from tactile_graph import load
 from tactile_graph.errors import DataError, RuleError, UsageError
 from tactile_graph.wires import Image
-from tactile_graph_filters.thresholds.noise_level import noise_level
+from tactile_graph_filters.thresholds.noise_level import OF_PEAK, noise_level
 from tactile_graph_filters.thresholds.recording_level import recording_level
 from tactile_graph_filters.thresholds.threshold import Threshold
 
@@ -41,7 +41,7 @@ def test_the_level_is_that_of_a_frame_with_the_recordings_noise_and_peak(
     loaded = [noise_level(Image(f, quantity="raw")) for f in frames[20:]]
     assert found.quantity == "raw"
     assert found.level == pytest.approx(np.median(loaded), rel=0.03)
-    assert found.told.endswith("r.npy, 40 frames")
+    assert found.told.endswith(f"r.npy, 40 frames{OF_PEAK}")
 
 
 @pytest.mark.parametrize("side", [4, 6, 8])
@@ -88,14 +88,14 @@ def test_every_frame_is_parted_by_the_same_level(frames: np.ndarray, recording: 
     assert [m.count for m in masks] == [0] * 20 + [16] * 20
     told = masks[-1].assumed  # type: ignore[attr-defined]
     assert "on, which is above the noise of" in told
-    assert told.endswith("r.npy, 40 frames")
+    assert told.endswith(f"r.npy, 40 frames{OF_PEAK}")
 
 
 def test_a_mapping_says_how_the_recording_is_read(recording: Path) -> None:
     told = {"path": str(recording), "skip": 20, "quantity": "gram"}
     found = recording_level(told)
     assert found.quantity == "gram"
-    assert found.told.endswith("20 frames")
+    assert found.told.endswith(f"20 frames{OF_PEAK}")
 
 
 @pytest.mark.parametrize(

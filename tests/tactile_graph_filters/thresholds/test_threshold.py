@@ -12,6 +12,7 @@ from helpers_filters import image_of, same_grid
 from tactile_graph.errors import DataError, Degenerate, RuleError
 from tactile_graph.wires import Image
 from tactile_graph.wires.stacks import ImageStack
+from tactile_graph_filters.thresholds.levelled_masks import LevelledMaskStack
 from tactile_graph_filters.thresholds.threshold import (
     Threshold,
     any_at_least,
@@ -166,6 +167,33 @@ def test_auto_finds_what_stands_out_of_the_noise_and_says_the_level():
 @pytest.mark.parametrize("values", [np.zeros((4, 4)), np.full((4, 4), 7.0), np.zeros((1, 1))])
 def test_auto_finds_nothing_where_nothing_differs(values):
     assert Threshold(level="auto")(Image(values)).count == 0
+
+
+def test_auto_says_where_a_share_of_the_peak_decides():
+    rng = np.random.default_rng(2)
+    values = rng.normal(0.0, 0.1, (16, 16))
+    values[3:7, 3:7] += 100.0
+    values[10:14, 9:13] += 2.0
+    light = np.where(values > 50.0, 2.0, values)
+    step = Threshold(level="auto")
+    masks = [step(Image(its, quantity="gram")) for its in (values, light)]
+    assert [mask.count for mask in masks] == [16, 32]
+    noise = "above the frame's own noise"
+    assert masks[0].assumed.endswith(f"{noise}: 3 % of the peak, as that is more")
+    assert masks[1].assumed.endswith(noise)
+    each = step.stacked(ImageStack(np.stack([values, light]), quantity="gram")).values
+    assert [mask.assumed for mask in each] == [mask.assumed for mask in masks]
+    assert [mask.assumed for mask in each.take(np.array([1]))] == [masks[1].assumed]
+    assert [mask.assumed for mask in LevelledMaskStack.of(masks)] == [m.assumed for m in masks]
+
+
+def test_one_level_of_a_recording_says_where_a_share_of_the_peak_decides(tmp_path):
+    rng = np.random.default_rng(2)
+    frames = rng.normal(0.0, 0.1, (4, 16, 16))
+    frames[:, 3:7, 3:7] += 100.0
+    np.savez(tmp_path / "r.npz", frames=frames, pitch_cm=1.0, quantity="gram")
+    mask = Threshold(level="auto", noise_of=tmp_path / "r.npz")(Image(frames[0], quantity="gram"))
+    assert mask.assumed.endswith("r.npz, 4 frames: 3 % of the peak, as that is more")
 
 
 def test_auto_finds_nothing_in_noise_alone():

@@ -69,3 +69,38 @@ def test_noise_is_told_alike_in_loops(n):
     for values in (normal, np.round(normal), np.zeros(n), np.minimum(normal, 0.0)):
         ordered = in_order(values)
         assert plainly(noise_of_sorted)(ordered) == noise_of_sorted.reference(ordered)
+
+
+def readings_in_steps(rng, sigma, touched=0, side=32, step=1.0):
+    values = 100.0 + sigma * rng.standard_normal(side * side)
+    values[:touched] += sigma * rng.uniform(6.0, 150.0, touched)
+    return np.round(values) * step
+
+
+@pytest.mark.parametrize("sigma", [1.6, 1.8, 2.0, 2.3, 2.6, 3.5, 5.0])
+@pytest.mark.parametrize("touched", [0, 300])
+@pytest.mark.parametrize("step", [1.0, 0.15])
+def test_of_stretches_as_short_in_coarse_steps_none_is_preferred(sigma, touched, step):
+    rng = np.random.default_rng(5)
+    found = [frame_noise(readings_in_steps(rng, sigma, touched, step=step)) for _ in range(30)]
+    assert np.mean([f.zero for f in found]) / step == pytest.approx(100.0, abs=0.1 * sigma)
+    assert np.mean([f.zero + 4.0 * f.sigma for f in found]) > (100.0 + 3.9 * sigma) * step
+    if not touched:
+        assert np.mean([f.sigma for f in found]) < 1.1 * sigma * step
+
+
+def test_a_load_as_close_together_as_the_zero_is_none_in_coarse_steps():
+    values = np.concatenate([np.repeat([9.0, 10.0, 11.0], 100), np.repeat([49.0, 50.0, 51.0], 100)])
+    found = frame_noise(values)
+    assert found.zero == 10.0
+    assert found.sigma < 3.0
+
+
+def test_coarse_steps_are_told_alike_in_loops():
+    rng = np.random.default_rng(6)
+    for side in (3, 4, 8, 32):
+        for sigma in (0.5, 1.0, 1.7, 2.0, 2.6, 4.0, 9.0):
+            for step in (1.0, 0.15):
+                touched = int(rng.integers(side * side // 2))
+                ordered = in_order(readings_in_steps(rng, sigma, touched, side, step))
+                assert plainly(noise_of_sorted)(ordered) == noise_of_sorted.reference(ordered)
