@@ -341,8 +341,12 @@ class LineFile:
         self._n_bytes += size
 
     def _leave_off(self, file: BinaryIO) -> None:
-        """Leave whole lines of a file, and a pipe as it is: nobody may take the rest of a line."""
-        if not self._waits:
+        """Leave whole lines of a file that it opened.
+
+        A pipe is left as it is, for nobody may take the rest of a line, and so is stdout: its file
+        may hold what others wrote.
+        """
+        if not self._waits and self.output != "-":
             os.ftruncate(file.fileno(), self._n_bytes)
             return
         self.broken = True
