@@ -204,7 +204,8 @@ def _stdout_for_itself() -> tuple[BinaryIO, bool]:
         return sys.stdout.buffer, False
 
 
-def _is_regular(file: BinaryIO) -> bool:
+def is_regular(file: BinaryIO) -> bool:
+    """Return whether a file is a plain one: no pipe, no device, nothing of a program's own."""
     try:
         return stat.S_ISREG(os.fstat(file.fileno()).st_mode)
     except (OSError, ValueError, AttributeError):  # stdout is no file, as in tests
@@ -283,7 +284,7 @@ class LineFile:
             except KeyboardInterrupt:
                 self.broken = not is_plain(self.output)  # nobody may ever read that pipe
                 raise
-            self._waits = not _is_regular(self._file)
+            self._waits = not is_regular(self._file)
             self._put(self._file, self.lines.head())
         return self._file
 

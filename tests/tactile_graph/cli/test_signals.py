@@ -69,6 +69,35 @@ def test_a_signal_ends_a_run_whose_pipe_nobody_reads(
 
 @pytest.mark.slow
 @posix
+@pytest.mark.parametrize("output", ["pipe.jsonl", "-"])
+def test_workers_end_with_the_line_that_they_count_last_where_a_pipe_is_read_slowly(
+    tmp_path: Path, output: str
+) -> None:
+    named = output != "-"
+    if named:
+        output = str(tmp_path / output)
+        os.mkfifo(output)
+    running = process("run", *ENDLESS, "-o", output, "--workers", "2", stdout=subprocess.PIPE)
+    got, is_sent = b"", False
+    with running:
+        assert running.stdout is not None
+        assert running.stderr is not None
+        with open(output, "rb", buffering=0) if named else running.stdout as reader:
+            while part := os.read(reader.fileno(), 8000):
+                got += part
+                time.sleep(0.02)
+                if not is_sent and len(got) > 500_000:
+                    running.send_signal(signal.SIGINT)
+                    is_sent = True
+        said = running.stderr.read()
+    assert running.wait(60) == 130, said
+    assert [json.loads(line)["frame"] for line in got.splitlines()] == [*range(got.count(b"\n"))]
+    assert got.endswith(b"\n")
+    assert b"interrupted: %d frames" % got.count(b"\n") in said
+
+
+@pytest.mark.slow
+@posix
 def test_sigterm_keeps_what_was_compared_and_says_so(tmp_path: Path) -> None:
     pytest.importorskip("tactile_graph_compare")
     meant = tmp_path / "out.json"
