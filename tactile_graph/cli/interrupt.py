@@ -55,10 +55,10 @@ class Interrupts:
 
     There it waits for the end of the block, so that what is being written is written whole; one
     that comes `PATIENCE_S` after it waits no more, for a block may never end. Where somebody else
-    is waited for (`reader_awaited`), the first one comes again by itself then. The signals that end
-    programs raise `Ended` likewise. One that is ignored (nohup) stays so. What is
-    raised where Python lets no error out, as in a callback that a library's machine code calls, or
-    in a ``__del__``, comes again right after.
+    is waited for as long (`reader_awaited`), the first one comes again by itself. The signals that
+    end programs raise `Ended` likewise. One that is ignored (nohup) stays so. What is raised where
+    Python lets no error out, as in a callback that a library's machine code calls, or in a
+    ``__del__``, comes again right after.
 
     Attributes
     ----------
@@ -136,6 +136,7 @@ def _send(number: int) -> None:
 def reader_awaited() -> Iterator[None]:
     """Tell that what is done in the block hangs on who reads a pipe, who may never do so."""
     _Held.n_awaited += 1
+    _Held.awaited_since_s = time.monotonic()
     try:
         yield
     finally:
@@ -145,6 +146,8 @@ def reader_awaited() -> Iterator[None]:
 class _Held:
     n_awaited: ClassVar[int] = 0
     """How many blocks wait for a reader."""
+    awaited_since_s: ClassVar[float] = 0.0
+    """When the latest of them began."""
 
     def __init__(self) -> None:
         self.depth = 0
@@ -169,7 +172,7 @@ class _Held:
     def _again(self, error: KeyboardInterrupt, number: int) -> None:
         if self.waiting is not error:
             return
-        if self.n_awaited:
+        if self.n_awaited and time.monotonic() - self.awaited_since_s >= PATIENCE_S:
             _send(number)
         self._again_later(error, number)
 

@@ -11,6 +11,7 @@ from tactile_graph_sources.devices.decoder import Decoded, Decoder
 from tactile_graph_sources.devices.inbox import Arrived, Inbox
 from tactile_graph_sources.devices.port import Port, UnpluggedError
 from tactile_graph_sources.devices.preset import Packet, Preset
+from tactile_graph_sources.devices.reply import ReplyFramer
 
 FIRST_BACKOFF_S = 0.5
 LONGEST_BACKOFF_S = 5.0
@@ -18,8 +19,8 @@ READ_WAIT_S = 0.05
 CHUNKS_KEPT = 4096
 QUIET_S = 0.05
 """At least so long nothing comes before replies count as all there: drivers hold bytes back."""
-PROVEN = 8
-"""Replies in a row, whole and in time, after which a part that never came no longer can."""
+LONGEST_SETTLING = 3.0
+"""Timeouts after which a line that is never silent is asked again; what comes then is doubtful."""
 
 
 class Reader:
@@ -70,8 +71,10 @@ class Reader:
         self._bytes_then = 0
         self._wait_s = min(READ_WAIT_S, preset.transport.silence_s)
         self._byte_s = 10.0 / (baud or preset.transport.baud)
-        self._by_length = isinstance(preset.framer, Packet) and preset.framed_by_silence
-        self._unproven = 0
+        framer = self.decoder.framer
+        self._replies = framer if isinstance(framer, ReplyFramer) else None
+        self._n_owed = 0  # replies that were asked for and may still come
+        self._doubtful = False
         self._port: Port | None = None
         try:
             self._port = self._open()
@@ -163,28 +166,30 @@ class Reader:
 
     def _ask(self, port: Port, request: bytes) -> None:
         """Ask a pad for one frame after the other."""
-        in_step = False  # whoever read the port before may have asked, too
+        in_step = False
+        self._n_owed = 1  # whoever read the port before may have asked, too
         while not self._stop.is_set():
             late = port.pending()
             if late:
                 self._take(late, time.perf_counter())
-            if late and self._by_length:
-                self._await_quiet(port)
+            if late and self._replies:
+                self._settle(port, self._replies)
                 self.decoder.discard()  # as long as a reply or not: it was not asked for
                 in_step = False
             self._keep(self.decoder.boundary())
-            good, short = self.counts.good, self.counts.bad["short"]
+            good = self.counts.good
             port.write(request)
-            prompt = self._await_reply(port) and in_step
-            if self._by_length and not prompt:
-                self._await_quiet(port)
+            self._n_owed += 1
+            prompt = self._await_reply(port) and in_step and not self._doubtful
+            waited = False
+            if self._replies and prompt:
+                self._n_owed = max(0, self._n_owed - 1)
+            elif self._replies:
+                waited = self._settle(port, self._replies)
             self._keep(self.decoder.boundary())
             in_step = self.counts.good > good
-            if self.counts.bad["short"] > short:  # the rest may come before the next reply
-                self._unproven = PROVEN
-            elif prompt:
-                self._unproven = max(0, self._unproven - 1)
-            self._stalled(time.perf_counter())
+            if not waited:  # that is no stall
+                self._stalled(time.perf_counter())
 
     def _await_reply(self, port: Port) -> bool:
         """Read a reply; return whether it came in time, and nothing behind it."""
@@ -198,18 +203,23 @@ class Reader:
             if self.counts.good > good:
                 return True
             if self.decoder.complete:
-                if self._by_length:
+                if self._replies:
                     time.sleep(2.0 * self._byte_s)  # its excess is here by then
                 extra = port.pending()  # a reply that is too long is no frame
                 if extra:
                     self._take(extra, now)
                 return not extra
             if now > deadline:
+                self._stalled(now)
                 return False
         return False
 
-    def _await_quiet(self, port: Port) -> None:
-        """Read on until nothing comes for as long as a reply takes on the wire, or a stall."""
+    def _settle(self, port: Port, replies: ReplyFramer) -> bool:
+        """Read on until nothing comes; return whether the rest of a reply was waited for in vain.
+
+        For as long as a reply takes on the wire, or for a timeout where the rest of one may still
+        come: whoever asks before gets that, and the beginning of the next, for a reply.
+        """
         quiet_s = max(QUIET_S, self._on_wire_s())
         start = last = time.perf_counter()
         while not self._stop.is_set():
@@ -218,8 +228,15 @@ class Reader:
             if data:
                 self._take(data, now)
                 last = now
-            if now - last >= quiet_s or now - start >= self.timeout_s:
-                return
+            rest = self._doubtful or (replies.in_part and replies.n_whole < self._n_owed)
+            if now - last >= (self.timeout_s if rest else quiet_s):
+                self._n_owed = 0 if rest else max(0, self._n_owed - replies.n_whole)
+                self._doubtful = False
+                return rest
+            if now - start >= LONGEST_SETTLING * self.timeout_s:
+                self._doubtful = True
+                break
+        return False
 
     def _reply_s(self) -> float:
         """How long a reply may take: twice its time on the wire and some for the scan."""
@@ -239,7 +256,7 @@ class Reader:
             return
         self._last_good, self._bytes_then = time.perf_counter(), self.counts.bytes
         self.state = "streaming"
-        if self._unproven:
+        if self._doubtful:
             self.counts.doubtful += len(frames)  # none of these were doubtful by their framing
             frames = [f._replace(doubtful=True) for f in frames]
         self.inbox.put([Arrived(f, self._time_of(f.end)) for f in frames])

@@ -27,6 +27,16 @@ class ReplyFramer:
         """Whether a whole reply is there."""
         return self._length >= self.layout.size
 
+    @property
+    def n_whole(self) -> int:
+        """How many replies what came since the last silence is enough for."""
+        return self._length // self.layout.size
+
+    @property
+    def in_part(self) -> bool:
+        """Whether that is no whole number of replies."""
+        return self._length % self.layout.size > 0
+
     def feed(self, data: bytes) -> list[Units]:
         """Keep bytes until the next silence; never more than one unit of them."""
         self._length += len(data)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping
+from contextlib import closing
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,6 +15,7 @@ from tactile_graph.cli.interrupt import Interrupts, code_of, words_of
 from tactile_graph.cli.many.finished import refuse_other, stays
 from tactile_graph.cli.many.job import Done, Job, done, for_workers
 from tactile_graph.cli.many.made_of import changed, made_of
+from tactile_graph.cli.many.piped import piped
 from tactile_graph.cli.many.unfinished import Unfinished
 from tactile_graph.cli.output.outputs import Output
 from tactile_graph.cli.output.progress import Bar
@@ -173,7 +175,8 @@ class ManyRun:
         output = self.asked.output
         try:
             if self.unfinished is None:
-                self._join(self._parts(held), output.name)
+                with closing(self._parts(held)) as parts:
+                    self._join(parts, output.name)
                 return
             for _ in self._parts(held):
                 pass
@@ -189,8 +192,8 @@ class ManyRun:
         finally:
             self.bar.stop()
 
-    def _parts(self, held: Any) -> Iterator[bytes]:
-        """Yield what each portion came to, when it is kept."""
+    def _parts(self, held: Any) -> Generator[bytes, None, None]:
+        """Yield what each portion came to, and count it when that is written."""
         asked = self.asked
         try:
             self.feed.begin(self.low)
@@ -214,13 +217,14 @@ class ManyRun:
                         again = True
                         break
                     with held:
+                        yield came.part
                         self._take(portion, came)
-                    yield came.part
                     if came.error is not None:
                         self.error = came.error
                         return
         if self.low == asked.span.start and self.error is None:
-            yield self._without_frames(given, held)
+            with held:
+                yield self._without_frames(given)
 
     def _refuse_state(self) -> None:
         """Refuse to go on with frames that must be read from the start, where steps keep state.
@@ -240,7 +244,7 @@ class ManyRun:
             raise DataError("workers", told)
         raise InOneRow(f"steps keep state, and {self.feed.irregular}")
 
-    def _without_frames(self, given: bytes, held: Any) -> bytes:
+    def _without_frames(self, given: bytes) -> bytes:
         """Return what the output is where no frame came."""
         if self.asked.span.start:
             got = self.ranges.n_frames if self.ranges else self.report.counts["frames"]
@@ -248,8 +252,7 @@ class ManyRun:
             raise UsageError(f"--frames {start}:…: the source gave only {got} frames")
         nothing = Portion(self.low, self.low, packed([]))
         came = done(given, nothing)
-        with held:
-            self._take(nothing, came)
+        self._take(nothing, came)
         return came.part
 
     def _done(self, workers: InOrder[Done]) -> Iterator[tuple[Portion, Done]]:
@@ -295,10 +298,10 @@ class ManyRun:
         joined = self.asked.output.exporter.joined
         assert joined is not None  # or the frames would not have been divided
         if name == "-":
-            joined(parts, sys.stdout.buffer)
+            joined(parts, piped(sys.stdout.buffer))
             return
         with whole_file(name, by="joined") as file:  # one run at a time: it holds the journal
-            joined(parts, file)
+            joined(parts, piped(file))
             self.n_bytes = file.tell() if file.seekable() else 0
 
     # -- the end -------------------------------------------------------------------------------

@@ -204,7 +204,8 @@ def _stdout_for_itself() -> tuple[BinaryIO, bool]:
         return sys.stdout.buffer, False
 
 
-def _is_regular(file: BinaryIO) -> bool:
+def is_regular(file: BinaryIO) -> bool:
+    """Return whether a file is a plain one: no pipe, no device, nothing of a program's own."""
     try:
         return stat.S_ISREG(os.fstat(file.fileno()).st_mode)
     except (OSError, ValueError, AttributeError):  # stdout is no file, as in tests
@@ -283,7 +284,7 @@ class LineFile:
             except KeyboardInterrupt:
                 self.broken = not is_plain(self.output)  # nobody may ever read that pipe
                 raise
-            self._waits = not _is_regular(self._file)
+            self._waits = not is_regular(self._file)
             self._put(self._file, self.lines.head())
         return self._file
 
@@ -341,8 +342,12 @@ class LineFile:
         self._n_bytes += size
 
     def _leave_off(self, file: BinaryIO) -> None:
-        """Leave whole lines of a file, and a pipe as it is: nobody may take the rest of a line."""
-        if not self._waits:
+        """Leave whole lines of a file that it opened.
+
+        A pipe is left as it is, for nobody may take the rest of a line, and so is stdout: its file
+        may hold what others wrote.
+        """
+        if not self._waits and self.output != "-":
             os.ftruncate(file.fileno(), self._n_bytes)
             return
         self.broken = True

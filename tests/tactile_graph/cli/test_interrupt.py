@@ -76,6 +76,23 @@ def test_one_gets_through_to_where_a_reader_is_awaited(monkeypatch: pytest.Monke
     assert 0.05 < time.monotonic() - begun_s < SLEEP_S
 
 
+def hand_on_slowly(taken: list[int]) -> None:
+    with Interrupts() as interrupts, interrupts.held:
+        signal.raise_signal(signal.SIGINT)
+        for k in range(15):
+            with reader_awaited():
+                time.sleep(0.015)
+            taken.append(k)
+
+
+def test_one_waits_while_a_reader_takes_something(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(interrupt, "PATIENCE_S", 0.1)
+    taken: list[int] = []
+    with pytest.raises(KeyboardInterrupt):
+        hand_on_slowly(taken)
+    assert len(taken) == 15
+
+
 def test_what_ends_by_itself_is_asked_once_before_it_is_made_to():
     asked: list[str] = []
     with Interrupts() as interrupts:

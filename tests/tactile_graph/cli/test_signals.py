@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import array
 import json
 import os
 import select
@@ -12,6 +13,10 @@ import time
 from pathlib import Path
 
 import pytest
+
+if sys.platform != "win32":
+    import fcntl
+    import termios
 
 ENV = {**os.environ, "TACTILE_GRAPH_KERNELS": "plain"}
 ENDLESS = ("circle-1", "--source", "simulate", "--frames", "1000000")
@@ -65,6 +70,45 @@ def test_a_signal_ends_a_run_whose_pipe_nobody_reads(
     assert b"ended by SIGTERM" in said
     if reader is not None:
         os.close(reader)
+
+
+def await_full(pipe: int) -> None:
+    """Wait until nothing more goes into a pipe."""
+    n_before, n_bytes = -1, 0
+    while n_bytes < 30_000 or n_bytes > n_before:
+        time.sleep(1.0)
+        waiting = array.array("i", [0])
+        fcntl.ioctl(pipe, termios.FIONREAD, waiting)
+        n_before, n_bytes = n_bytes, waiting[0]
+
+
+@pytest.mark.slow
+@posix
+@pytest.mark.parametrize("output", ["pipe.jsonl", "-"])
+def test_workers_end_with_the_line_that_they_count_last_where_a_pipe_is_read_slowly(
+    tmp_path: Path, output: str
+) -> None:
+    named = output != "-"
+    if named:
+        output = str(tmp_path / output)
+        os.mkfifo(output)
+    running = process("run", *ENDLESS, "-o", output, "--workers", "2", stdout=subprocess.PIPE)
+    with running:
+        assert running.stdout is not None
+        assert running.stderr is not None
+        with open(output, "rb", buffering=0) if named else running.stdout as reader:
+            got = os.read(reader.fileno(), 1)
+            await_full(reader.fileno())
+            running.send_signal(signal.SIGINT)
+            time.sleep(0.2)  # or it is awake only when there is room again
+            while part := os.read(reader.fileno(), 8000):
+                got += part
+                time.sleep(0.02)
+        said = running.stderr.read()
+    assert running.wait(60) == 130, said
+    assert [json.loads(line)["frame"] for line in got.splitlines()] == [*range(got.count(b"\n"))]
+    assert got.endswith(b"\n")
+    assert b"interrupted: %d frames" % got.count(b"\n") in said
 
 
 @pytest.mark.slow

@@ -83,22 +83,50 @@ def test_a_reply_that_pauses_tears_no_frame(pad: FakePad, pause_s: float) -> Non
 
 @pytest.mark.slow
 def test_where_every_reply_pauses_torn_frames_are_doubtful(pad: FakePad) -> None:
-    """By its length alone a rest and a beginning are a reply."""
+    """By its length alone a rest and a beginning are a reply: no rest is left, so none is torn."""
     slow = {n: [bytes([n]) * 128, 0.5, bytes([n]) * 128] for n in range(10, 16)}
     report = Report()
     frames = taken(pad, report, slow)
-    assert all(frames[i].doubtful for i in torn(frames))
-    assert report.counts["doubtful frames"] == sum(f.doubtful for f in frames)
-    assert not frames[-1].doubtful
-    assert torn(frames[-8:]) == []
+    assert torn(frames) == []
+    assert not any(f.gap or f.doubtful for f in frames)
 
 
 @pytest.mark.slow
-def test_a_short_reply_makes_the_next_ones_doubtful_and_no_more(pad: FakePad) -> None:
+@pytest.mark.parametrize("longer_s", [0.9, 1.7])
+def test_a_pad_that_pauses_in_each_reply_and_once_for_longer_stays_in_step(
+    pad: FakePad, longer_s: float
+) -> None:
+    """Its pauses are longer than the silence that ends a reply."""
+    halves = {n: [bytes([n]) * 128, 0.12, bytes([n]) * 128] for n in range(1, 16)}
+    halves[4][1] = longer_s
     report = Report()
+    frames = taken(pad, report, halves, n_frames=12)
+    assert [np.unique(f.image.values).tolist() for f in frames] == [[n] for n in range(1, 13)]
+    assert not any(f.gap or f.doubtful for f in frames)
+
+
+@pytest.mark.slow
+def test_the_rest_of_a_short_reply_is_waited_for_before_the_next_is_asked_for(pad: FakePad) -> None:
+    report = Report()
+    start = time.perf_counter()
     frames = taken(pad, report, {20: [b"\x05" * 255]})
-    assert [f.index for f in frames if f.doubtful] == list(range(19, 28))
+    assert time.perf_counter() - start > 2.0
+    assert [f.index for f in frames if f.gap] == [19]
+    assert not any(f.doubtful for f in frames)
     assert report.counts["bad frames: short"] == 1
+    assert not report.counts["timeouts"]
+
+
+@pytest.mark.slow
+def test_frames_of_a_line_that_is_never_silent_are_doubtful(
+    pad: FakePad, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A rest that was waited for as long as it may may still come."""
+    monkeypatch.setattr("tactile_graph_sources.devices.reader.LONGEST_SETTLING", 0.1)
+    report = Report()
+    frames = taken(pad, report, {5: [b"\x05" * 255]}, n_frames=8)
+    assert [f.index for f in frames if f.doubtful] == [4, 5, 6, 7]
+    assert report.counts["doubtful frames"] >= 4
 
 
 @pytest.mark.slow
@@ -108,7 +136,8 @@ def test_a_byte_too_many_moves_no_cell_of_the_replies_that_follow(
 ) -> None:
     """One that comes much later than the rest is too late for the reply it is part of."""
     report = Report()
-    long = [b"\x05" * 100 + b"\x55" + b"\x05" * 155, pause_s, b"\x05"]
+    cells = b"\x05" * 100 + b"\x55" + b"\x05" * 155
+    long = [cells, pause_s, b"\x05"] if pause_s else [cells + b"\x05"]
     frames = taken(pad, report, {20: long})
     assert torn(frames) == ([] if pause_s == 0.0 else [19])
     assert not any(f.doubtful for f in frames)

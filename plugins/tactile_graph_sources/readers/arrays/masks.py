@@ -16,12 +16,11 @@ _BAD = {"invalid", "is_invalid", "masked", "bad", "invalid_cells", "bad_cells"}
 _UNCLEAR = {"mask", "masks"}
 """True is a masked cell to NumPy, a good one to programs that cut out pictures."""
 Outlines = Mapping[str, tuple[tuple[int, ...], np.dtype[Any]]]
-Masks = Mapping[str, NDArray[np.bool_]]
+Masks = Mapping[str, NDArray[Any]]
+"""As they lie in their file: booleans, or 0 and 1."""
 
 
-def masks_among(
-    outlines: Outlines, load: Callable[[str], NDArray[Any]]
-) -> dict[str, NDArray[np.bool_]]:
+def masks_among(outlines: Outlines, load: Callable[[str], NDArray[Any]]) -> dict[str, NDArray[Any]]:
     """Return the arrays that are named as one of good or bad cells is, and hold yes and no alone.
 
     That are booleans, or 0 and 1 of one byte each, beside an array of numbers. Those that do not
@@ -30,7 +29,7 @@ def masks_among(
     named = {n for n in outlines if n.lower() in _GOOD | _BAD | _UNCLEAR}
     numbers = [s for n, (s, t) in outlines.items()
                if t.kind in "uif" and len(s) > 1 and n not in named]  # fmt: skip
-    masks: dict[str, NDArray[np.bool_]] = {}
+    masks: dict[str, NDArray[Any]] = {}
     for name in sorted(named) if numbers else ():
         shape, dtype = outlines[name]
         unclear = name.lower() in _UNCLEAR
@@ -39,7 +38,7 @@ def masks_among(
             continue
         mask = load(name)
         if mask.dtype.kind == "b" or np.isin(mask, (0, 1)).all():
-            masks[name] = mask.astype(np.bool_)
+            masks[name] = mask
     return masks
 
 
@@ -74,7 +73,7 @@ def without_invalid(
 
     It is told of each mask. Those that are not of its shape are returned, for `of_frames`.
     """
-    others: dict[str, NDArray[np.bool_]] = {}
+    others: dict[str, NDArray[Any]] = {}
     for name, mask in masks.items():
         if name.lower() in _UNCLEAR:
             reading.assume(f"array {name!r} left out")
@@ -91,7 +90,9 @@ def without_invalid(
 def of_frames(reading: Reading, what: str, frames: NDArray[Any], masks: Masks) -> NDArray[Any]:
     """Return matrices, shape (n, rows, columns), with NaN for cells that masks say are none.
 
-    Cells of a mask may lie in a row; one with a value for each frame is of all its cells.
+    Cells of a mask may lie in a row; one with a value for each frame is of all its cells. An empty
+    one says nothing, and numbers in a row that fit neither are passed by: they may be a list of
+    cells, of which 0 and 1 are two.
 
     Raises
     ------
@@ -99,9 +100,12 @@ def of_frames(reading: Reading, what: str, frames: NDArray[Any], masks: Masks) -
         If a mask has no such shape, or it may be of frames as well as of cells.
     """
     for name, mask in masks.items():
+        if not mask.size:
+            continue
         found = list(_readings(reading, mask, frames.shape))
         if len(found) != 1:
-            if reading.told.sensor:
+            in_a_row = mask.ndim == 1 and mask.dtype.kind != "b" and not found
+            if reading.told.sensor or in_a_row:
                 reading.assume(f"array {name!r} left out")
                 continue
             n, rows, columns = frames.shape
@@ -117,8 +121,8 @@ def of_frames(reading: Reading, what: str, frames: NDArray[Any], masks: Masks) -
 
 
 def _readings(
-    reading: Reading, mask: NDArray[np.bool_], shape: tuple[int, ...]
-) -> Iterator[NDArray[np.bool_]]:
+    reading: Reading, mask: NDArray[Any], shape: tuple[int, ...]
+) -> Iterator[NDArray[Any]]:
     """Yield what a mask may say of matrices, in a shape that goes over all of them."""
     n, rows, columns = shape
     by_column = reading.told.order == "columns"
@@ -133,11 +137,9 @@ def _readings(
         yield laid.swapaxes(-1, -2) if by_column else laid
 
 
-def _without(
-    reading: Reading, values: NDArray[Any], name: str, mask: NDArray[np.bool_]
-) -> NDArray[Any]:
+def _without(reading: Reading, values: NDArray[Any], name: str, mask: NDArray[Any]) -> NDArray[Any]:
     reading.heed(f"cells left out of which array {name!r} says so")
-    good = mask if name.lower() in _GOOD else ~mask
+    good = mask == (name.lower() in _GOOD)
     return np.where(good, values, np.full((), np.nan, np.result_type(values, np.float32)))
 
 

@@ -233,7 +233,7 @@ class _OnDisk:
 
 def _loaded(reading: Reading, array: Any, packing: Packing) -> Any:
     if told := said_of_gone(array.basename or _bare_name(reading.path), array, _pieces(array)):
-        reading.assume(told)
+        reading.heed(told)  # by its writer, as a rule: no assumption
     if array.ndim == 3:
         return _OnDisk(array, packing)
     return packing.unpacked(np.asarray(array[()]))

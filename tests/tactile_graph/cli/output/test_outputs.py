@@ -220,16 +220,19 @@ def test_an_older_output_stays_whole_until_the_next_is(tmp_path: Path) -> None:
     assert not (tmp_path / "out.unfinished.csv").exists()
 
 
+class Interrupted(FileIO):
+    """A file of which Ctrl-C comes within each line that begins with n."""
+
+    def write(self, data: Any) -> int:
+        if data[:1] == b"n":
+            super().write(data[:2])
+            raise KeyboardInterrupt
+        return super().write(data)
+
+
 def test_a_line_that_is_interrupted_is_not_in_the_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    class Interrupted(FileIO):
-        def write(self, data: Any) -> int:
-            if data[:1] == b"n":
-                super().write(data[:2])
-                raise KeyboardInterrupt
-            return super().write(data)
-
     monkeypatch.setattr(
         "tactile_graph.cli.output.writers.opened_alone", lambda name: Interrupted(name, "w")
     )
@@ -239,6 +242,22 @@ def test_a_line_that_is_interrupted_is_not_in_the_file(
         writer._put(writer.open(), "next\n")
     writer.close()
     assert (tmp_path / "out.csv").read_text() == "first\n"
+
+
+def test_an_interrupted_line_takes_nothing_from_what_stdout_held_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "log.jsonl").write_text("earlier\n")
+    monkeypatch.setattr(
+        "tactile_graph.cli.output.writers._stdout_for_itself",
+        lambda: (Interrupted("log.jsonl", "a"), True),
+    )
+    writer = LineFile("-", JsonLines())
+    writer._put(writer.open(), "first\n")
+    with pytest.raises(KeyboardInterrupt):
+        writer._put(writer.open(), "next\n")
+    writer.close()
+    assert (tmp_path / "log.jsonl").read_text() == "earlier\nfirst\nne"
 
 
 def test_an_older_output_that_cannot_be_replaced_is_written_into(

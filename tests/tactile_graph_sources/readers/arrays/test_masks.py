@@ -115,6 +115,31 @@ def test_a_mask_that_may_be_of_frames_or_of_cells_is_refused(tmp_path: Path) -> 
         frames_of(path)
 
 
+@pytest.mark.parametrize("name", ["bad", "valid"])
+@pytest.mark.parametrize("given", [[0], [1], [0, 1], [1, 0, 1]])
+def test_numbers_in_a_row_that_fit_neither_frames_nor_cells_are_told_and_passed_by(
+    name: str, given: list[int], tmp_path: Path
+) -> None:
+    """A list of the cells 0 and 1 looks like a mask."""
+    path = write(tmp_path, npz_bytes(frames=OBLONG, **{name: np.array(given, np.uint8)}))
+    frames, report = frames_of(path)
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+    assert all(f.image.valid is None for f in frames)
+    assert f"recordings with array {name!r} left out" in report.assumed
+
+
+@pytest.mark.parametrize("shape", [(0,), (0, ROWS, COLUMNS), (0, 2)])
+@pytest.mark.parametrize("dtype", [bool, np.uint8])
+def test_a_mask_of_nothing_says_nothing(
+    shape: tuple[int, ...], dtype: type, tmp_path: Path
+) -> None:
+    frames, report = frames_of(
+        write(tmp_path, npz_bytes(frames=OBLONG, bad=np.zeros(shape, dtype)))
+    )
+    np.testing.assert_array_equal([f.image.values for f in frames], OBLONG)
+    assert not any("'bad'" in text for text in report.counts)
+
+
 def test_numbers_that_are_no_yes_and_no_are_no_mask(tmp_path: Path) -> None:
     for name, given in (("bad", np.array([3, 17])), ("valid", np.arange(N, dtype=np.uint8))):
         read = frames_of(write(tmp_path, npz_bytes(frames=OBLONG, **{name: given})))[0]

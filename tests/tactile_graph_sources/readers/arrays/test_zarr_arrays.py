@@ -184,6 +184,7 @@ def test_chunks_that_are_not_there_are_told(tmp_path: Path, version: Version) ->
         "recordings with 1 of 6 chunks of array 'p' not there, from [6, 0, 0] on: read as its fill "
         "value, 0.0, be they lost, or left out for holding nothing else"
     ]
+    assert told[0] not in report.assumed
 
 
 def test_of_a_whole_array_no_chunk_is_told_of(tmp_path: Path) -> None:
