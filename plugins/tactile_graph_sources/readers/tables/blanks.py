@@ -120,6 +120,8 @@ def blank_rows(table: Table, padded: Table, told: Told) -> tuple[bool, tuple[str
             return False, ()  # a frame a line
         return _has_rows(padded, told.rows) and not _has_rows(table, told.rows), ()
     sizes, fewer, usual = padded.groups[0], _usual(table), _usual(padded)
+    if not fewer:
+        return False, ()
     lone = any(padded.is_padded(x) and not is_blank(x) for x in padded.row_lines)
     taken = f"lines of separators {'and one number' if lone else 'alone'} taken for"
     if len(sizes) > 1 and (not _are_alike(padded, sizes) or fewer == usual or _are_times(padded)):
@@ -142,13 +144,13 @@ def _are_alike(table: Table, sizes: Sequence[int]) -> bool:
 
 
 def _usual(table: Table) -> int:
-    return Counter(table.groups[0]).most_common(1)[0][0]
+    return next((size for size, _ in Counter(table.groups[0]).most_common(1)), 0)
 
 
 def _has_rows(table: Table, rows: int) -> bool:
     """Return whether matrices have so many rows, also where nothing parts them."""
     sizes = table.groups[0]
-    if len(sizes) > 1 or not table.padded:
+    if len(sizes) != 1 or not table.padded:
         return _usual(table) == rows
     n = sizes[0] // rows
     at = Counter(_blank_at(table, [rows] * n))

@@ -439,12 +439,13 @@ def _width(fields: Sequence[Sequence[str]]) -> tuple[int, int]:
 def _named_width(dialect: Dialect, before: Sequence[str], width: int, n_fields: int) -> int:
     """Return the width with columns that hold nothing, as far as the header says they are cells.
 
-    Spare columns have names, too: cells are those with which the names fill a grid.
+    Spare columns have names, too: cells are those with which the names fill a grid, and whatever
+    is named by row and column.
     """
     for wide in range(n_fields, width, -1):
         header, _ = _header(dialect, before, wide)
         found = named(header) if header else Named()
-        if _fill_a_grid(found) and not _fill_a_grid(found, width):
+        if _fill_a_grid(found) and (found.places or not _fill_a_grid(found, width)):
             return wide
     return width
 

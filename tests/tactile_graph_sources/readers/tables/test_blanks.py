@@ -262,3 +262,18 @@ def test_separators_at_the_end_of_lines_are_no_column(tmp_path: Path) -> None:
     for settings in ({}, TOLD):
         told = check(write(tmp_path, text), LOADED, **settings)
         assert not any("empty" in one for one in told)
+
+
+def test_cells_named_by_row_and_column_are_cells_though_the_last_row_has_no_value(
+    tmp_path: Path,
+) -> None:
+    frames = without([(ROWS - 1, j) for j in range(COLUMNS)])
+    rows = [f"{k}," + line(f.ravel(), ",") + ",\n" for k, f in enumerate(frames)]
+    text = HEADER.replace("time_s", "frame").replace("\n", ",\n") + "".join(rows)
+    check(write(tmp_path, text), frames, **TOLD)
+
+
+def test_matrices_without_any_row_of_two_values_are_read_as_told(tmp_path: Path) -> None:
+    text = "5,,,\n,,,\n,,,\n\n,,,\n,6,,\n,,,\n\n,,,\n,,,\n,,7,\n"
+    found, _ = frames_of(write(tmp_path, text), rows=3, columns=4)
+    assert [frame.image.values.max() for frame in found] == [5.0, 6.0, 7.0]
