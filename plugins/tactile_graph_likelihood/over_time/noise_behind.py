@@ -17,6 +17,9 @@ from tactile_graph_likelihood.single.density.element_terms import OFF, ON, UNDER
 from tactile_graph_likelihood.single.readings import Readings
 from tactile_graph_pads.pad import Pad
 
+BARE = 4.0
+"""Times the least that shows up to which what most elements read is a bare pad's offset."""
+
 
 class NoiseBehind(NamedTuple):
     """What noise does to logarithms of loads; arrays have the frame's shape.
@@ -68,7 +71,7 @@ def noise_behind(
     if grams.quantity != "gram":
         raise RuleError(f"volts: tell the noise of loads in gram alone, got {grams.quantity}")
     rise = risen(volts, pad)
-    if rise.zero > np.max(rise.least):
+    if rise.zero > BARE * np.max(rise.least):
         return readings, told_alone(readings, least)
     shows = (readings.states == ON) & (rise.above > 0.0)
     if not shows.any():

@@ -11,8 +11,8 @@ from tactile_graph_likelihood.several.joint.scene import Configuration, laid
 from tactile_graph_likelihood.several.pad import Found, OnPad
 from tactile_graph_likelihood.single.density.element_terms import ON, UNKNOWN
 
-TELLING = 24
-"""Touched elements from which on two discs side by side leave more than voids between them."""
+TELLING = 36
+"""Touched elements from which on two discs side by side leave a notch between them that shows."""
 
 NOTCH, HARDLY = 0.02, 0.5
 """Of a hull's elements, the bare ones that are hardly covered up to which there is no notch, and

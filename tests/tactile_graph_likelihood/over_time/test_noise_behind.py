@@ -25,14 +25,14 @@ def as_image(values, quantity):
     return Image(values, (1.3, 1.3), (-0.15, -0.15), quantity)
 
 
-def read(load_g, rng, noise_v, disc=None, step_v=0.0):
+def read(load_g, rng, noise_v, disc=None, step_v=0.0, zero_v=0.0):
     """Return loads, by the noisy volts of a disc that bears so much an element, and these."""
     x, y, r = (10.0, 9.5, 3.3) if disc is None else (disc.x_cm, disc.y_cm, disc.radius_cm)
     at = 1.3 * np.arange(16) + 0.5
     share = np.clip(r + 0.5 - np.hypot(at - x, at[:, None] - y), 0.0, 1.0)
     siemens = PAD.law.conductance_s(load_g * share)
     volts = PAD.circuit.supply_v * PAD.circuit.ratio(siemens)
-    volts = volts + noise_v * rng.standard_normal(volts.shape)
+    volts = volts + zero_v + noise_v * rng.standard_normal(volts.shape)
     volts = as_image(step_v * np.round(volts / step_v) if step_v else volts, "volt")
     back = PAD.circuit.inverse(volts.values / PAD.circuit.supply_v).siemens
     return Force(pad="thesis")(as_image(back, "siemens")), volts
@@ -80,6 +80,13 @@ def test_without_noise_and_where_nothing_is_bare_readings_stay():
     readings, noise = noise_behind(alone, grams, volts, PAD, LEAST)
     assert readings is alone
     assert not noise.width.any()
+
+
+def test_an_offset_of_two_steps_loads_nothing():
+    grams, volts = read(200.0, np.random.default_rng(5), 0.0005, step_v=0.00244, zero_v=0.005)
+    readings, _ = noise_behind(readings_of(grams, 0.3, 5.0), grams, volts, PAD, LEAST)
+    bare = np.hypot(*np.meshgrid(1.3 * np.arange(16) - 9.5, 1.3 * np.arange(16) - 9.0)) > 5.0
+    assert set(readings.states[bare]) == {UNDER}
 
 
 @pytest.mark.slow
