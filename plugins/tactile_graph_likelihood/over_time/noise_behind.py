@@ -18,7 +18,8 @@ from tactile_graph_likelihood.single.readings import Readings
 from tactile_graph_pads.pad import Pad
 
 BARE = 4.0
-"""Times the least that shows up to which what most elements read is a bare pad's offset."""
+"""Times the least that shows, or a step of the converter, up to which what most elements read is a
+bare pad's offset."""
 
 
 class NoiseBehind(NamedTuple):
@@ -71,7 +72,8 @@ def noise_behind(
     if grams.quantity != "gram":
         raise RuleError(f"volts: tell the noise of loads in gram alone, got {grams.quantity}")
     rise = risen(volts, pad)
-    if rise.zero > BARE * np.max(rise.least):
+    step = frame_noise(np.asarray(volts.filled(0.0), np.float64).ravel()).step
+    if rise.zero > BARE * max(float(np.max(rise.least)), step):
         return readings, told_alone(readings, least)
     shows = (readings.states == ON) & (rise.above > 0.0)
     if not shows.any():
@@ -84,14 +86,13 @@ def noise_behind(
     silent = (readings.states == OFF) | ((readings.states == ON) & ~shows)
     states = np.where(silent, np.uint8(UNDER), readings.states)
     logs = np.where(silent, hidden, readings.logs)
-    width = np.where(shows, _width(readings.logs, rise.above, rise.least, volts, pad), 0.0)
+    noise = np.hypot(rise.least / SHOWS, step / math.sqrt(12.0))
+    width = np.where(shows, _width(readings.logs, rise.above, noise, pad), 0.0)
     return readings._replace(logs=logs).with_states(states), NoiseBehind(hidden, width)
 
 
-def _width(logs: Values, above: Values, least: float | Values, volts: Image, pad: Pad) -> Values:
-    """Return the standard deviation of loads' logarithms by noise, and by rounding."""
-    step = frame_noise(np.asarray(volts.filled(0.0), np.float64).ravel()).step
-    noise = np.hypot(least / SHOWS, step / math.sqrt(12.0))
+def _width(logs: Values, above: Values, noise: Values, pad: Pad) -> Values:
+    """Return the standard deviation of loads' logarithms, given that of the volts behind them."""
     share = np.square(noise / np.maximum(above, noise))
     if pad.circuit.kind == "divider":  # each shares in the noise of its column
         left = np.maximum(pad.circuit.supply_v - above.sum(axis=0), noise)
