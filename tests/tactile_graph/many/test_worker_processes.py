@@ -161,7 +161,7 @@ def test_what_workers_had_when_they_were_killed_goes(
         assert time.monotonic() < until_s
         time.sleep(0.05)
     place.end()
-    assert not list(tmp_path.iterdir())
+    assert not list(tmp_path.glob("tactile-graph-*"))
 
 
 ENDING = """
