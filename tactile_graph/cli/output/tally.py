@@ -395,7 +395,7 @@ class Tally:
         """Return the tally that plain data tell of."""
         tally = cls(outputs, **{name: data[name] for name in COUNTS})
         tally.assumed = {node: (text, frame) for node, (text, frame) in data["assumed"].items()}
-        tally.ranges = {node: (low, high) for node, (low, high) in data.get("ranges", {}).items()}
+        tally.ranges = {node: (low, high) for node, (low, high) in data["ranges"].items()}
         for node, (n_ran, told) in data["noticed"].items():
             tally.noticed[node] = _Noticed(n_ran, {key: (*kind,) for key, kind in told.items()})
         for name in ("failed", "skipped", "not_finite"):

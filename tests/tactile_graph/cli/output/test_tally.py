@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -231,6 +232,13 @@ def test_an_item_of_a_list_that_failed_is_named_and_the_frame_is_not_whole() -> 
 # -- notices -------------------------------------------------------------------------------------
 
 
+def put_down(folder: Path, step: str, readings: Sequence[float], node: str = "c") -> None:
+    """Write a recording of one cell, and a pipeline of a step."""
+    (folder / "r.txt").write_text("".join(f"{reading}\n" for reading in readings))
+    text = f"{{pipeline: p, nodes: {{{node}: {{step: {step}, in: frame}}}}, outputs: [{node}]}}"
+    (folder / "p.yaml").write_text(text)
+
+
 class Counting:
     """Says something of the frames whose peak is above 2."""
 
@@ -255,13 +263,11 @@ class Counting:
         ([3, *[1] * 19, 5], ""),
     ],
 )  # fmt: skip
-def test_what_more_than_half_of_the_frames_say_is_told_in_closing_and_kept(
+def test_what_a_tenth_of_the_frames_say_is_told_in_closing_and_kept(
     hand_made: Path, monkeypatch: pytest.MonkeyPatch, peaks: list[int], told: str
 ) -> None:
     install(monkeypatch, hand_made, steps={"counting": Counting})
-    (hand_made / "r.txt").write_text("\n".join(map(str, peaks)))
-    text = "{pipeline: p, nodes: {c: {step: counting, in: frame}}, outputs: [c]}"
-    (hand_made / "p.yaml").write_text(text)
+    put_down(hand_made, "counting", peaks)
     got = call("run", "p.yaml", "r.txt", "-o", "out.jsonl")
     assert got.exit_code == 0
     lines = [line for line in (got.stdout + got.stderr).splitlines() if line.startswith("notice")]
@@ -286,10 +292,7 @@ def test_notices_that_differ_in_more_than_numbers_are_counted_apart(
     hand_made: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     install(monkeypatch, hand_made, steps={"talkative": Talkative})
-    (hand_made / "r.txt").write_text("3\n1\n4\n5\n2\n")
-    (hand_made / "p.yaml").write_text(
-        "{pipeline: p, nodes: {c: {step: talkative, in: frame}}, outputs: [c]}"
-    )
+    put_down(hand_made, "talkative", [3, 1, 4, 5, 2])
     got = call("run", "p.yaml", "r.txt")
     lines = (got.stdout + got.stderr).splitlines()
     assert [line for line in lines if line.startswith("notice")] == [
@@ -398,10 +401,7 @@ def test_of_what_was_assumed_anew_in_each_frame_the_range_is_told(
     hand_made: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     install(monkeypatch, hand_made, steps={"by_reading": by_reading})
-    (hand_made / "r.txt").write_text("2.5\n0.5\n40\n")
-    (hand_made / "p.yaml").write_text(
-        "{pipeline: p, nodes: {a: {step: by_reading, in: frame}}, outputs: [a]}"
-    )
+    put_down(hand_made, "by_reading", [2.5, 0.5, 40], "a")
     told = "assumed  a: x is 2.5 (in frame 0; 0.5 to 40 in the frames looked at)"
     got = call("run", "p.yaml", "r.txt", "-o", "out.jsonl")
     assert got.exit_code == 0

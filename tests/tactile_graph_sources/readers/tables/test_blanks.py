@@ -268,6 +268,7 @@ def test_cells_named_by_row_and_column_are_cells_though_the_last_row_has_no_valu
     tmp_path: Path,
 ) -> None:
     frames = without([(ROWS - 1, j) for j in range(COLUMNS)])
+    frames[:, 0, 0] = 100.0 + 3.0 * np.arange(len(frames))  # climbs as a time does
     rows = [f"{k}," + line(f.ravel(), ",") + ",\n" for k, f in enumerate(frames)]
     text = HEADER.replace("time_s", "frame").replace("\n", ",\n") + "".join(rows)
     check(write(tmp_path, text), frames, **TOLD)
